@@ -48,7 +48,7 @@ pub fn chance(text: &str) -> Result<f64, String> {
 
 /// A duration in seconds, up to a day.
 pub fn seconds(text: &str) -> Result<f64, String> {
-    // A day: longer is no waiting.
+    // A day at most.
     let value = text.parse().ok().filter(|value| (0.0..=86400.0).contains(value));
     value.ok_or_else(|| format!("found {text:?}, expected seconds from 0 to 86400"))
 }

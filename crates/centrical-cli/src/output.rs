@@ -67,7 +67,7 @@ fn style(emphasis: Emphasis) -> Style {
     }
 }
 
-/// Prints a text on standard output. A reader that has seen enough (`| head`) is no failure; a full disk is.
+/// Prints a text on standard output. A reader that has seen enough (`| head`) is not a failure; a full disk is.
 ///
 /// # Errors
 /// [`Error`] when standard output does not take the text.

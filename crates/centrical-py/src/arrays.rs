@@ -13,7 +13,7 @@ pub type Rows<'py> = Bound<'py, PyArray2<f64>>;
 /// The array that an argument is. One that is not in C order, or not aligned, is copied into C order where `may_copy`.
 ///
 /// # Errors
-/// `TypeError` for what is no array of float64, `ValueError` for another shape or, unless `may_copy`, another order.
+/// `TypeError` unless it is an array of float64, `ValueError` for another shape or, unless `may_copy`, another order.
 pub fn rows<'py>(argument: &str, object: &Bound<'py, PyAny>, may_copy: bool) -> PyResult<Rows<'py>> {
     let Ok(array) = object.cast::<PyArray2<f64>>() else { return Err(refusal(argument, object)) };
     let [n, columns] = [array.shape()[0], array.shape()[1]];
@@ -72,7 +72,7 @@ fn is_aligned(array: &Rows) -> bool {
     array.data().addr() % align_of::<f64>() == 0
 }
 
-/// What is wrong with an argument that is no matrix of float64.
+/// Why an argument is not a matrix of float64.
 fn refusal(argument: &str, object: &Bound<PyAny>) -> PyErr {
     let Ok(array) = object.cast::<PyUntypedArray>() else {
         let found = object.get_type().name().map_or_else(|_| "an object".to_owned(), |name| name.to_string());

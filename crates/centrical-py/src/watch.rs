@@ -267,7 +267,7 @@ fn text(py: Python, text: &str) -> Py<PyAny> {
 }
 
 fn seconds(argument: &str, value: f64) -> PyResult<Duration> {
-    // A day: longer is no waiting.
+    // A day at most.
     if (0.0..=86400.0).contains(&value) {
         return Ok(Duration::from_secs_f64(value));
     }

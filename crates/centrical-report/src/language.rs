@@ -122,7 +122,7 @@ impl Language {
         plain.split('/').map(words).collect::<Vec<_>>().join("/")
     }
 
-    /// A day as a session writes it: what is no day of ISO 8601 stays as it is.
+    /// A day as a session writes it: a text that is not a day of ISO 8601 stays as it is.
     pub(crate) fn written_date(self, text: &str) -> String {
         text.parse().map_or_else(|_| text.to_owned(), |date| self.date(date))
     }

@@ -228,7 +228,7 @@ impl Error {
         }
     }
 
-    /// What was found, where it can be told from the rest of the message.
+    /// What was found, where it can be separated from the rest of the message.
     pub fn found(&self) -> Option<&str> {
         match self {
             Self::Table(TableError::Content { found, .. }) => Some(found),
@@ -266,7 +266,7 @@ impl Error {
         }
     }
 
-    /// Reading `file`, of which `expected` says what it should be, failed with `source`.
+    /// Reading `file`, which should be `expected`, failed with `source`.
     pub(crate) fn reading(file: &Path, source: io::Error, expected: &str) -> Self {
         TableError::reading(file, source, expected).into()
     }

@@ -22,7 +22,7 @@ use crate::settings::{from_toml, read_settings};
 pub struct Laboratory {
     /// Who calibrated.
     pub laboratory: LaboratoryTable,
-    /// For whom.
+    /// The customer.
     pub customer: Customer,
     /// The document: number, dates, place.
     pub certificate: Certificate,
@@ -79,7 +79,7 @@ impl Laboratory {
     /// The limits of the decision, each of one of `parameters` or of one axis of the compensated reading. `file` is the laboratory's.
     ///
     /// # Errors
-    /// [`Error`] with the limit that names no such parameter or group, or is no quantity of it.
+    /// [`Error`] with the limit that names no such parameter or group, or is not a quantity of it.
     pub fn limits(&self, file: &Path, parameters: &[Limitable]) -> Result<Vec<StatedLimit>, Error> {
         let limits = self.decision.iter().flat_map(|decision| &decision.limit);
         let stated: Result<Vec<_>, _> =

@@ -22,7 +22,7 @@ pub enum Quantity {
     Text(String),
 }
 
-/// A quantity that is none, or not of the dimension asked for.
+/// An invalid quantity, or one of another dimension.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("found {found}, expected {expected}")]
 pub struct NotThatQuantity {
@@ -36,7 +36,7 @@ impl Quantity {
     /// The quantity in SI.
     ///
     /// # Errors
-    /// If it is no finite number, or its unit is not one of `dimension`.
+    /// If it is not a finite number, or its unit is not of `dimension`.
     pub fn si(&self, dimension: Dimension) -> Result<f64, NotThatQuantity> {
         let value = match self {
             Self::Number(number) => Some(*number),
@@ -58,7 +58,7 @@ impl Quantity {
     /// Gravity at a place on Earth in SI.
     ///
     /// # Errors
-    /// If it is no acceleration, or none between 9.7 and 9.9 m/s^2.
+    /// If it is not an acceleration from 9.7 to 9.9 m/s^2.
     pub fn gravity(&self) -> Result<f64, NotThatQuantity> {
         let value = self.si(Dimension::Acceleration)?;
         if GRAVITY.contains(&value) {

@@ -231,7 +231,7 @@ impl From<PlateauMean> for ReducedPlateau {
     }
 }
 
-/// Amplitude of a harmonic from its two quadratures; none where there is no harmonic.
+/// Amplitude of a harmonic from its two quadratures; `None` without a harmonic.
 fn amplitude([cosine, sine]: &[Vector3<f64>; 2]) -> Option<Vector3<f64>> {
     Some(cosine.zip_map(sine, f64::hypot)).filter(|amplitude| *amplitude != Vector3::zeros())
 }

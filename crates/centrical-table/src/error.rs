@@ -136,7 +136,7 @@ impl Error {
         Self::Content { file: file.to_owned(), place, found: found.into(), expected: expected.into() }
     }
 
-    /// Reading `file`, of which `expected` says what it should be, failed with `source`.
+    /// Reading `file`, which should be `expected`, failed with `source`.
     #[must_use]
     pub fn reading(file: &Path, source: io::Error, expected: &str) -> Self {
         match source.kind() {

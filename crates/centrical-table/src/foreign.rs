@@ -7,7 +7,7 @@ const REPLACEMENT: char = '\u{fffd}';
 
 /// The text without what a terminal, a compiler, a browser or a reader of XML takes for anything but a character to be shown: control
 /// characters but the end of a line and the tabulator, marks that reverse the direction of what follows, characters without
-/// a width, and code points that are no characters. Each is replaced by U+FFFD. Most texts are as they were.
+/// a width, and code points that are not characters. Each is replaced by U+FFFD. Most texts are as they were.
 pub fn harmless(text: &str) -> Cow<'_, str> {
     without(text, |c| !matches!(c, '\n' | '\t') && is_harmful(c))
 }

@@ -248,7 +248,7 @@ fn text_lines(source: Source, format: Format, magic: &[u8], extent: Extent, expe
 }
 
 /// What a table as text looks like, from its first lines: encoding, delimiter, decimal sign, lines above the header, names, units, kind
-/// of stamps. Nothing of other formats, and of text that is no table of numbers.
+/// of stamps. Nothing of other formats, and of text that is not a table of numbers.
 ///
 /// # Errors
 /// If the file cannot be read.

@@ -64,7 +64,7 @@ impl RowNumber {
         Self(place)
     }
 
-    /// Units of all fields, of which those of the fields in the file are known.
+    /// Units of all fields from those of the fields in the file.
     pub fn in_all(self, mut found: UnitsFound) -> UnitsFound {
         if let Some(place) = self.0 {
             found.units.insert(place.min(found.units.len()), None);

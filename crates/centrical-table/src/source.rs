@@ -98,7 +98,7 @@ impl Source {
     /// The same as text.
     ///
     /// # Errors
-    /// As [`Source::bytes`]; and if it is no text in UTF-8.
+    /// As [`Source::bytes`]; and if it is not text in UTF-8.
     pub fn text(&self, most: u64, expected: &str) -> Result<String, Error> {
         String::from_utf8(self.bytes(most, expected)?).map_err(|error| {
             let bad = error.utf8_error().valid_up_to();

@@ -25,13 +25,13 @@ struct Sum {
     written: u32,
 }
 
-/// Bytes to which so many packed ones may unpack.
+/// Bytes to which `packed` ones may unpack.
 pub(crate) fn most_bytes(packed: u64) -> u64 {
     LARGEST_RATIO.saturating_mul(packed).saturating_add(ALLOWANCE)
 }
 
 impl<R: Read> Unpacked<R> {
-    /// What `input` gives of so many packed bytes, with the CRC-32 that it should have, if one is written.
+    /// What `input` gives of `packed` bytes, with the CRC-32 that it should have, if one is written.
     pub fn new(input: R, packed: u64, crc_32: Option<u32>) -> Self {
         let most = most_bytes(packed);
         let sum = crc_32.map(|written| Sum { hasher: Hasher::new(), written });

@@ -182,7 +182,7 @@ fn a_session_under_another_title_is_of_the_same_files() {
     assert_eq!(doubts("rows", &["--rows-only"]), [(json!("same-day"), 3)]);
 }
 
-/// A serial number alone does not tell two units apart.
+/// A serial number alone does not distinguish two units.
 #[test]
 fn several_units_are_named_by_model_and_serial() {
     let results = Results::new();

@@ -142,7 +142,7 @@ fn a_tumble_of_the_unit_fills_lines_in() {
         message.contains("found readings in m/s^2, expected the unit of the tumble, which is another"),
         "{message}"
     );
-    // A centrifuge session is no tumble.
+    // A centrifuge session is not a tumble.
     let output = draft(&copy.session());
     let message = String::from_utf8_lossy(&output.stderr).into_owned();
     assert!(

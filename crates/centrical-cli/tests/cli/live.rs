@@ -317,7 +317,7 @@ fn a_folder_that_vanishes_ends_the_watch() {
     assert_eq!(served.child.wait().unwrap().code(), Some(2));
 }
 
-/// Finished work: the list, a report, two compared, a file that is no result; and the page of a watch that was killed.
+/// Finished work: the list, a report, two compared, a file of another kind; and the page of a watch that was killed.
 #[test]
 fn finished_work_is_listed_reported_and_compared() {
     let copy = Copy::new();

@@ -110,7 +110,7 @@ fn what_is_no_record_is_refused() {
     assert!(text(&output).contains("it holds no noise to analyse"), "{}", text(&output));
 }
 
-/// A whole record of a session is no noise: the message says so and what to do.
+/// A whole record of a session is not noise: the message says so and what to do.
 #[test]
 fn a_record_with_ramps_is_named() {
     let copy = Copy::new();

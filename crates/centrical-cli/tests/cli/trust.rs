@@ -91,7 +91,7 @@ fn montecarlo_draws_for_the_unit_that_is_predicted() {
     let predicted = uncertainties(&text(&run(&["observe", plan])), "PREDICTION", 3);
     assert_eq!((drawn.len(), predicted.len()), (49, 49));
     let agree = |name: &str, drawn: &HashMap<String, f64>| {
-        // One digit is told of a small number, two or more of others.
+        // A small number is printed with one digit, others with two or more.
         let rounding = if drawn[name] < 1e-3 { 0.5 } else { 0.05 };
         (drawn[name] / predicted[name] - 1.0).abs() < 0.02 + rounding
     };

@@ -3,7 +3,7 @@ use proptest::prelude::*;
 
 use crate::models::{Model, everything, kozlov};
 
-/// Readings of the model, some of them from beyond its range and one that is no number, by axes.
+/// Readings of the model, some of them from beyond its range and one that is not a number, by axes.
 fn readings(model: &Model, count: usize) -> [Vec<f64>; 3] {
     let mut columns = [const { Vec::new() }; 3];
     for k in 0..count {

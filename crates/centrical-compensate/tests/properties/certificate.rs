@@ -29,7 +29,7 @@ proptest! {
         }
     }
 
-    /// The bound is no larger than need be: terms of one sign on one axis reach it at a corner.
+    /// The bound is tight: terms of one sign on one axis reach it at a corner.
     #[test]
     fn the_bound_is_reached(quadratic in 1e-7..1e-5_f64, cubic in 1e-10..1e-9_f64, h in 1.0..2000.0_f64) {
         let terms = vec![Term::power(1, 1, 2, quadratic), Term::power(1, 2, 3, cubic)];

@@ -80,7 +80,7 @@ proptest! {
     }
 }
 
-/// What is no number has no inverse.
+/// A value that is not a number has no inverse.
 #[test]
 fn no_numbers_are_refused() {
     let compensation = Compensation::new(&[], 1.0).unwrap();

@@ -88,7 +88,7 @@ impl Guard {
             return Err(Refusal::Host);
         }
         let header = |name: &str| request.headers().get(name).and_then(|value| value.to_str().ok());
-        // A link that a person follows is no script of another page.
+        // A link that a person follows is not a script of another page.
         let is_followed = header("sec-fetch-mode") == Some("navigate") && header("sec-fetch-dest") == Some("document");
         match header("sec-fetch-site") {
             None | Some("same-origin" | "none") => Ok(()),

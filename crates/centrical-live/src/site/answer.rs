@@ -4,7 +4,7 @@ use centrical_report::Language;
 
 /// Pages without a server: what a path is answered with.
 pub trait Site: Send + Sync + 'static {
-    /// The answer to a path; `None` if there is no such page.
+    /// The answer to a path; `None` without such a page.
     fn answer(&self, path: &str, query: &Query) -> Option<Answer>;
 
     /// Whether there is a panel that changes, and events of it.

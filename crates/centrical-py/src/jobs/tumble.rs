@@ -106,7 +106,7 @@ fn distance(turning_radius: Option<Amount>) -> PyResult<Option<f64>> {
     }
 }
 
-/// Rows that are no direction, and a missing uncertainty, are errors of the call.
+/// Rows that are not directions, and a missing uncertainty, are errors of the call.
 fn checked(attitudes: Attitudes, uncertainty: Option<Amount>) -> PyResult<(Attitudes, f64)> {
     let uncertainty = Amount::optional(uncertainty, "attitude_uncertainty", Dimension::Angle)?;
     let missing =

@@ -1,4 +1,4 @@
-//! Readings that are no samples.
+//! Interpolated readings.
 
 use centrical_session::CalibrationResult;
 

@@ -18,7 +18,7 @@ const BOTTOM: f64 = 34.0;
 /// Room right of the map for the name of its last column.
 const RIGHT: f64 = 84.0;
 
-/// Two hues that every eye tells apart; strength is opacity, so the map lives on light and dark grounds.
+/// Two hues that every eye distinguishes; strength is opacity, so the map lives on light and dark grounds.
 const STYLE: &str = "\
 .map text{font:13px system-ui,sans-serif;fill:#1a1a1a}.map .title{font-size:16px;font-weight:600}\
 .map .ground{fill:#fff}.map .p{fill:#0072b2}.map .n{fill:#d55e00}.map .frame{fill:none;stroke:#1a1a1a}\

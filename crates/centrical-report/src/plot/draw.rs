@@ -199,7 +199,7 @@ fn legend_entry(svg: &mut String, index: usize, series: &Series, (x, row): (f64,
 }
 
 fn draw_series(svg: &mut String, index: usize, series: &Series, frame: &Frame, comma: bool) -> std::fmt::Result {
-    /// Lines of up to so many points answer to hovering.
+    /// Largest number of points of a line that answers to hovering.
     const HOVER: usize = 300;
     write!(svg, "<g class=\"s{}\">", index % COLOURS)?;
     if series.mark != Mark::Markers {

@@ -22,7 +22,7 @@ pub(super) fn drift(screen: &mut Screen, result: &CalibrationResult) {
     }
 }
 
-/// Samples that are not used, by kind, and readings that are no samples, where there are any.
+/// Samples that are not used, by kind, and interpolated readings, if any.
 fn left_out(screen: &mut Screen, result: &CalibrationResult) {
     let LeftOutSummary { spikes, stuck, missing, repeated } = not_used(result);
     let kinds = [("spikes", spikes), ("missing", missing), ("stuck", stuck), ("repeated", repeated)];

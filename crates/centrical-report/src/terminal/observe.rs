@@ -14,8 +14,8 @@ use crate::number::{counted, two_digits};
 /// Remedies beyond these only raise the rank, and the list is long enough.
 const MOST_REMEDIES: usize = 8;
 
-/// The report as text: rank, what is lost and why, remedies, what is hardly told apart, the source's conditions, the
-/// uncertainties to be expected.
+/// The report as text: rank, undetermined combinations and reasons, remedies, correlated groups, the source's
+/// conditions, expected uncertainties.
 pub fn observation_text(report: &ObservabilityReport) -> Screen {
     let mut screen = Screen::default();
     heading(&mut screen, report);

@@ -6,7 +6,7 @@
 use centrical_report::plot::{Axis, Plot, Point, Series};
 use nalgebra::{Matrix3, Vector3};
 
-/// What every pair that nothing else tells apart must keep: four times what is noticed.
+/// Least distance of a pair that nothing else distinguishes: four times what is noticed.
 const DISTANCE: f64 = 9.2;
 
 fn sights() -> [(&'static str, Matrix3<f64>); 4] {
@@ -58,7 +58,7 @@ fn distance(a: &str, b: &str) -> (f64, &'static str) {
     sights().map(seen).into_iter().min_by(|a, b| a.0.total_cmp(&b.0)).unwrap()
 }
 
-/// A plot of so many series, its style with light colours and with dark ones, and its elements.
+/// A plot of a number of series, its style with light colours and with dark ones, and its elements.
 fn plot(series: usize) -> (String, [Vec<String>; 2]) {
     let points = || vec![Point::new(0.0, 1.0), Point::new(1.0, 2.0)];
     let empty = Plot::new("", Axis::linear(""), Axis::linear(""));
@@ -72,7 +72,7 @@ fn plot(series: usize) -> (String, [Vec<String>; 2]) {
     (svg.clone(), [colours(light), colours(dark)])
 }
 
-/// The three axes are told apart by colour alone in the records; of all six colours those that go with one dash and one
+/// Colour alone distinguishes the three axes in the records; of all six colours those that go with one dash and one
 /// marker, the fifth with the first and the sixth with the second.
 #[test]
 fn any_eye_tells_series_apart() {

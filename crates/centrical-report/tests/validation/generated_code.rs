@@ -223,8 +223,8 @@ fclose(file);
 if any(outside != any(isnan(f), 2)), exit(1); end
 "#;
 
-/// What is no matrix of readings, and a second argument that is not 'raw', end in an error that says so; integers and single precision count
-/// as double. `is_raw` says whether the unit has raw output.
+/// Anything but a matrix of readings, and a second argument other than 'raw', end in an error that says so; integers and single precision
+/// count as double. `is_raw` says whether the unit has raw output.
 const OCTAVE_REFUSALS: &str = r#"
 function said = message(varargin)
   said = "";

@@ -65,7 +65,7 @@ pub struct PairComparison {
     pub years: Option<f64>,
     /// The coefficients that both determine.
     pub differences: Vec<DifferenceSummary>,
-    /// `d^T C^-1 d` of all of them together, with the covariance of the differences; null where the sum is no covariance.
+    /// `d^T C^-1 d` of all together, with the covariance of the differences; null where the sum is not a covariance.
     pub chi_squared: Option<f64>,
     /// Its degrees of freedom.
     pub degrees_of_freedom: usize,

@@ -45,7 +45,7 @@ pub enum DoubtKind {
     SameInputs,
     /// Results of one unit and day from other files.
     SameDay,
-    /// A date that is no day.
+    /// A date that is not a day.
     NoDay,
     /// A day that is still to come.
     Ahead,

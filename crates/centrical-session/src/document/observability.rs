@@ -104,7 +104,7 @@ pub struct ObservabilityReport {
     pub parameters: Vec<ObservedParameter>,
     /// What is lost.
     pub lost: Vec<LostCombination>,
-    /// What is hardly told apart.
+    /// Groups of correlated parameters.
     pub correlated_groups: Vec<GroupReport>,
     /// The source's sufficient conditions.
     pub conditions: Vec<ConditionReport>,
@@ -170,7 +170,7 @@ pub struct SightReport {
     pub is_one_sum: bool,
 }
 
-/// Parameters that are hardly told apart.
+/// Parameters that the data hardly separate.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct GroupReport {
     /// Names.

@@ -109,7 +109,7 @@ pub struct TiltSummary {
 /// What the two tilts say of each other.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum TiltVerdict {
-    /// Their difference is no more than chance.
+    /// Chance explains their difference.
     Agree,
     /// They differ.
     Differ,

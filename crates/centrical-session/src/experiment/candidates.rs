@@ -94,7 +94,7 @@ impl Planning {
 /// The time available for a plan [s], where it is stated beside the plan file.
 ///
 /// # Errors
-/// If it is no time, or none that a plan can take.
+/// If it is not a time that a plan can take.
 pub fn available_time(time: &Quantity) -> Result<f64, NotThatQuantity> {
     let (shortest, longest) = AVAILABLE;
     match time.si(Dimension::Time)? {

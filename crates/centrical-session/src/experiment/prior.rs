@@ -67,7 +67,7 @@ pub(crate) fn uncertainty_of(
     }
 }
 
-/// Refuses an uncertainty whose squares and quotients are no numbers any more. One that is not positive is left to others.
+/// Refuses an uncertainty whose squares or quotients overflow. One that is not positive is left to others.
 fn within_reason(
     at: &TomlPath,
     model: &MeasurementModel,

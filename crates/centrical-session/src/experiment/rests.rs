@@ -102,7 +102,7 @@ impl RestTable {
     ///
     /// # Errors
     /// If one has neither a table of rests nor attitudes, an uncertainty without attitudes, or a table and attitudes without
-    /// an uncertainty; if stated attitudes are none.
+    /// an uncertainty; if stated attitudes are invalid.
     pub(crate) fn named(file: &Path, folder: &Folder, tables: &[TumbleTable]) -> Result<Vec<Self>, Error> {
         let named = tables.iter().enumerate().map(|(n, table)| {
             let at = TomlPath::entry(file, "tumble", n);

@@ -191,7 +191,7 @@ impl Session {
     /// The measurement model of the session: its experiment, error model, extensions and priors.
     ///
     /// # Errors
-    /// If a prior names no parameter, or is none: only for a session changed since it was read.
+    /// If a prior names no parameter, or is invalid: only for a session changed since it was read.
     pub fn model(&self) -> Result<MeasurementModel, Error> {
         self.model_at(self.experiment.set_points.clone())
     }
@@ -367,7 +367,7 @@ pub(crate) fn named_extensions(at: &TomlPath, names: &[String]) -> Result<Vec<Ex
     Ok(extensions)
 }
 
-/// How the shifts of a pair are related; without an arm there are none, and each is free.
+/// How the shifts of a pair are related; free if not stated, as without an arm.
 pub(crate) fn pair_relation(file: &Path, table: &ModelTable) -> Result<PairRelation, Error> {
     let text = table.pair_relation.as_deref().unwrap_or("free");
     match text {

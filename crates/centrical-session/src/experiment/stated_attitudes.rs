@@ -95,7 +95,7 @@ const SAME: f64 = 1e-3;
 /// Directions of up as the key `attitudes` has them, of length 1, and the file that they stand in. Paths start from `folder`.
 ///
 /// # Errors
-/// If a listed direction is none, or the file as [`StatedAttitudes::named`].
+/// If a listed direction is invalid; for the file as [`StatedAttitudes::named`].
 pub(crate) fn directions(
     at: &TomlPath,
     folder: &Folder,

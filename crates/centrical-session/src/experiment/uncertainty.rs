@@ -30,7 +30,7 @@ const QUANTITIES: [&str; 15] = [
     "doubt",
 ];
 
-/// Standard uncertainty of a change of bias of which nothing is known [m/s^2]: ten times a typical bias.
+/// Standard uncertainty of an unknown change of bias [m/s^2]: ten times a typical bias.
 pub(crate) const ANY_BIAS: f64 = 0.5;
 
 /// Standard uncertainties, SI; `plateau_speed` is the same as `speed_uncertainty` of `[centrifuge]` or absent, and

@@ -24,7 +24,7 @@ pub struct LaboratoryTable {
     pub logo: Option<PathBuf>,
 }
 
-/// For whom.
+/// The customer.
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Customer {

@@ -33,7 +33,7 @@ impl Date {
         f64::from(self.year) + self.days_since(first).map_or(0.0, f64::from) / 366.0
     }
 
-    /// The day so many whole days later; the last day of the calendar where that is beyond it.
+    /// The day a number of whole days later; the last day of the calendar where that is beyond it.
     pub(crate) fn after(self, days: f64) -> Self {
         let civil = self.civil().unwrap_or(civil::Date::MAX);
         #[expect(clippy::cast_possible_truncation, reason = "a span of days saturates")]
@@ -86,7 +86,7 @@ impl<'de> Deserialize<'de> for Date {
     }
 }
 
-/// A text that is no day.
+/// A text that is not a day.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error("expected a day such as 2026-10-05")]
 pub struct NotADay;

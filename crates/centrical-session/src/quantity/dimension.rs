@@ -27,7 +27,7 @@ pub enum Dimension {
 
 impl Dimension {
     /// `value` [SI] as a number in `unit`: the one with the fewest digits that is read as the same `f64`. Where the factor of
-    /// the unit skips that `f64`, the nearest number, which is read to within one part in 2^52. `None` if `unit` is no unit
+    /// the unit skips that `f64`, the nearest number, which is read to within one part in 2^52. `None` if `unit` is not
     /// of this dimension.
     pub(crate) fn written(self, value: f64, unit: &str) -> Option<String> {
         let factor = self.factor(unit)?;
@@ -39,7 +39,7 @@ impl Dimension {
         Some(format!("{number} {unit}"))
     }
 
-    /// Factor that takes a number in `unit` to SI; `None` if `unit` is no unit of this dimension.
+    /// Factor that takes a number in `unit` to SI; `None` if `unit` is not of this dimension.
     pub fn factor(self, unit: &str) -> Option<f64> {
         self.units().iter().find(|(name, _)| *name == unit).map(|(_, factor)| *factor)
     }

@@ -15,7 +15,7 @@ use crate::error::Error;
 /// and what is judged one by one is copied.
 const SAMPLES_AT_A_TIME: usize = 1_500_000;
 
-/// The mean of a plateau, or why there is none.
+/// The mean of a plateau, or why it is missing.
 type Mean = Result<PlateauFit, ReductionError>;
 
 /// The record in a file.

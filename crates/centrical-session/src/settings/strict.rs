@@ -1,4 +1,4 @@
-//! Settings as they are meant: a table is no array, and an array has no elements beyond those that its form has.
+//! Settings as they are meant: a table is not an array, and an array has no elements beyond those that its form has.
 //!
 //! Forms that are derived take an array for a table, its elements by the order of the keys, and leave the rest of a long array unread. This
 //! deserialiser stands before that of the file, passes everything on, and refuses both.

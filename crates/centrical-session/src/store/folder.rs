@@ -22,7 +22,7 @@ impl Store {
     /// Opens a store that is there.
     ///
     /// # Errors
-    /// [`Error`] if the folder is not there or is no store.
+    /// [`Error`] if the folder is not there or is not a store.
     pub fn open(folder: &Path) -> Result<Self, Error> {
         let store = Self { folder: folder.to_owned() };
         if store.rows_folder().is_dir() {

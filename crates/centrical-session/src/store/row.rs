@@ -167,7 +167,7 @@ impl Row {
     }
 }
 
-/// Days from 1970-01-01 to a day in ISO 8601; none if the text is no day.
+/// Days from 1970-01-01 to a day in ISO 8601; `None` if the text is not a day.
 pub fn days_since_1970(date: &str) -> Option<i64> {
     let first = Date { year: 1970, month: 1, day: 1 };
     date.trim().parse::<Date>().ok()?.days_since(first).map(i64::from)

@@ -151,7 +151,7 @@ fn whole(number: usize) -> i64 {
     i64::try_from(number).unwrap_or(i64::MAX)
 }
 
-/// A term of which the name alone is read as yet.
+/// A term with nothing but its name read as yet.
 fn term(name: String) -> RowTerm {
     RowTerm { name, axis: 0, powers: [0; 3], sign_of: None }
 }

@@ -67,7 +67,7 @@ const LARGEST_SIZE: f64 = 1e6;
 struct TypicalTable {
     /// Its standard deviation in typical magnitudes.
     size: f64,
-    /// The session's own seed if there is none.
+    /// The session's own seed if absent.
     seed: Option<u64>,
 }
 
@@ -92,7 +92,7 @@ impl Truth {
     }
 }
 
-/// The model with those extensions of which the form names a parameter, and the number of parameters without them.
+/// The model with those extensions that have a parameter in the form, and the number of parameters without them.
 fn model(plan: &Session, form: &TruthForm) -> (MeasurementModel, usize) {
     let with =
         |extensions: &[Extension]| MeasurementModel::new(plan.experiment.clone(), plan.error_model.clone(), extensions);

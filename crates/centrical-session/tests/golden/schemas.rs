@@ -17,7 +17,7 @@ fn validator(form: SettingsForm) -> Validator {
     jsonschema::draft7::new(&schema).unwrap()
 }
 
-/// The text as an editor hands it to a validator: dates as text. `None` if it is no TOML.
+/// The text as an editor hands it to a validator: dates as text. `None` if it is not TOML.
 fn value(text: &str) -> Option<Value> {
     fn json(value: toml::Value) -> Value {
         match value {
@@ -26,7 +26,7 @@ fn value(text: &str) -> Option<Value> {
             toml::Value::Table(table) => Value::Object(table.into_iter().map(|(k, v)| (k, json(v))).collect()),
             toml::Value::String(text) => Value::String(text),
             toml::Value::Integer(number) => number.into(),
-            // JSON has no nan: as a text it is no number either.
+            // JSON has no nan: as a text it is not a number either.
             toml::Value::Float(number) => {
                 serde_json::Number::from_f64(number).map_or_else(|| Value::String(number.to_string()), Value::Number)
             }
@@ -36,7 +36,7 @@ fn value(text: &str) -> Option<Value> {
     toml::from_str::<toml::Table>(text).ok().map(|table| json(toml::Value::Table(table)))
 }
 
-/// A message with a line comes from the parser: then the schema refuses the text as well, unless it is no TOML at all.
+/// A message with a line comes from the parser: then the schema refuses the text as well, unless it is not TOML at all.
 pub fn refuses_what_the_parser_refuses(form: SettingsForm, text: &str, message: &str) {
     if message.starts_with(OF_PARSER)
         && let Some(value) = value(text)

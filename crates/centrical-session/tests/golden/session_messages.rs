@@ -400,7 +400,7 @@ fn positions_of_a_pair() {
     );
 }
 
-/// A table is no array, read by the order of its keys, and nothing of an array goes unread.
+/// A table is not an array, read by the order of its keys, and nothing of an array goes unread.
 #[test]
 fn tables_and_arrays_are_what_they_are() {
     compare(&[

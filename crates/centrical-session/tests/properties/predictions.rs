@@ -17,7 +17,7 @@ const RUNS: usize = 20_000;
 /// Prediction and scatter agree to this part in every parameter.
 const AGREE: f64 = 0.03;
 
-/// Where parameters of hundreds of typical magnitudes are not told, the others are not linear to better than this: of 20,000
+/// Where parameters of hundreds of typical magnitudes are left out, the others are not linear to better than this: of 20,000
 /// calibrations 315 do not converge, those that do scatter by 0.965 (alpha_1) to 1.030 (G1_12) of what is predicted.
 const AGREE_BESIDE_UNTOLD: f64 = 0.05;
 
@@ -60,7 +60,7 @@ impl Case {
         (Self { model, weights }, stated)
     }
 
-    /// Unknowns of so many typical magnitudes, signs in turn.
+    /// Unknowns of `size` typical magnitudes with alternating signs.
     fn truth(&self, size: f64) -> Vec<f64> {
         let sign = |j: usize| if j.is_multiple_of(2) { size } else { -size };
         self.model.parameters().iter().enumerate().map(|(j, p)| sign(j) * p.typical).collect()
@@ -183,7 +183,7 @@ fn every_parameter_of_the_source_as_printed_scatters_as_predicted() {
 }
 
 /// Four positions leave five combinations open, some parameters are known worse than without any data, and others lean on what is
-/// lost: the last two are said, and what is left scatters as predicted to 5 %.
+/// lost: the last two are named, and the others scatter as predicted to 5 %.
 #[test]
 #[ignore = "some minutes; run by .ci/run predictions"]
 fn every_parameter_of_four_positions_scatters_as_predicted() {

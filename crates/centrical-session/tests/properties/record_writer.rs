@@ -46,7 +46,7 @@ proptest! {
         prop_assert!(read_record(&output, &Columns::default()).unwrap() == record);
     }
 
-    /// As text: time to the bit, specific forces to the decimals that are told, which are below a part in 10^12 of the range.
+    /// As text: time to the bit, specific forces to the reported decimals, which are below a part in 10^12 of the range.
     #[test]
     fn text_is_rounded_as_it_says(rows in 1..20_000_usize, seed in 0.0..1.0_f64, range in 150.0..4000.0_f64) {
         let folder = tempfile::tempdir().unwrap();

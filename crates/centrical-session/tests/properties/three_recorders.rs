@@ -185,7 +185,7 @@ fn lost_samples_and_gaps_stay_gaps() {
         let number = |t: &f64| ((t - start) * RATE as f64).round() % (7 * RATE) as f64;
         let inside = record.t.iter().map(number).filter(|k| (8.0..(RATE / 2 - 8) as f64).contains(k));
         assert_eq!(inside.count(), 0);
-        // A single sample that is lost is no gap.
+        // A single lost sample is not a gap.
         assert!(record.t.len() as f64 > 0.92 * laboratory.session.record(m).unwrap().t.len() as f64 / 8.0);
     }
     let result = calibrated(&lossy);

@@ -113,7 +113,7 @@ fn a_parquet_record_replaced_by_rename_is_taken_up_plateau_by_plateau() {
 }
 
 /// The second mounting begins while lines of the first are on their way: what is missing is waited for, a last line that
-/// has come in part is no number.
+/// has come in part is not a number.
 #[test]
 fn a_record_that_another_follows_is_not_cut() {
     let text = fs::read(example("records/m01.csv")).unwrap();

@@ -28,7 +28,7 @@ pub(super) fn parts(source: &Source, fields: &[Field]) -> Result<Parts, Error> {
     if messages.is_stream()? { Ok(of_stream(messages, fields)) } else { of_file(messages, fields) }
 }
 
-/// A stream: the schema first, then batches of rows; dictionaries are of columns that are no numbers.
+/// A stream: the schema first, then batches of rows; dictionaries are of columns that are not numbers.
 fn of_stream(mut messages: Messages, fields: Vec<Field>) -> Parts {
     let mut columns = None;
     Box::new(std::iter::from_fn(move || next_of_stream(&mut messages, &mut columns, &fields).transpose()))

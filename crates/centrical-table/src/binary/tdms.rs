@@ -1,7 +1,7 @@
 //! TDMS, the format of National Instruments: channels in segments, read by channel.
 //!
-//! A column is a channel by its name, or by `group/channel` where several groups have one of that name. A column of time that is no
-//! channel is made of the properties of the first reading: `wf_start_time`, `wf_start_offset` and `wf_increment`.
+//! A column is a channel by its name, or by `group/channel` where several groups have one of that name. A column of time that is
+//! not a channel is made of the properties of the first reading: `wf_start_time`, `wf_start_offset` and `wf_increment`.
 
 mod metadata;
 mod scaling;

@@ -28,7 +28,7 @@ impl TypedReader {
     /// Opens a table, which should be what `expected` says.
     ///
     /// # Errors
-    /// [`Error`] if it is not there, or is no whole Parquet file.
+    /// [`Error`] if it is not there, or is not a whole Parquet file.
     pub fn open(file: &Path, expected: &str) -> Result<Self, Error> {
         let source = Source::open(file, expected)?;
         let metadata = catch_panic(|| ParquetMetaDataReader::new().parse_and_finish(&source));

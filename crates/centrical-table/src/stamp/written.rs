@@ -52,7 +52,7 @@ pub(crate) fn kind(text: &[u8]) -> Option<StampKind> {
 /// What a text says.
 struct Parsed {
     kind: StampKind,
-    /// Since 1970, in UTC where there is no offset; of a time of the day since midnight.
+    /// Since 1970, in UTC without an offset; of a time of the day since midnight.
     since: SignedDuration,
     has_offset: bool,
 }
@@ -83,8 +83,8 @@ fn since_1970(stamp: Timestamp) -> SignedDuration {
     stamp.duration_since(Timestamp::UNIX_EPOCH)
 }
 
-/// A date with points or slashes, a blank or `T`, and a time. With slashes the year comes first: day and month in `05/10/2026` cannot
-/// be told apart.
+/// A date with points or slashes, a blank or `T`, and a time. With slashes the year comes first: day and month in `05/10/2026` are
+/// ambiguous.
 fn with_date(text: &str) -> Option<Parsed> {
     let (date, time) = text.split_once([' ', 'T'])?;
     let mark = if date.contains('.') { '.' } else { '/' };

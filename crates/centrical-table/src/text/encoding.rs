@@ -49,7 +49,7 @@ impl TextEncoding {
         }
     }
 
-    /// The encoding of a text that is not UTF-16: one of one byte a character where it is no UTF-8. Cyrillic words are runs of letters
+    /// The encoding of a text that is not UTF-16: one of one byte a character if it is not UTF-8. Cyrillic words are runs of letters
     /// beyond ASCII; in Western ones such letters and signs stand alone.
     pub fn of_bytes(text: &[u8]) -> Self {
         let Err(error) = std::str::from_utf8(text) else { return Self::Utf8 };
@@ -85,7 +85,7 @@ impl fmt::Display for TextEncoding {
     }
 }
 
-/// What comes out of UTF-16 as UTF-8. What is no character is replaced, and is no number then.
+/// UTF-16 as UTF-8. Invalid characters are replaced, and are then not numbers.
 pub(crate) struct FromUtf16<R> {
     input: R,
     decoder: Decoder,

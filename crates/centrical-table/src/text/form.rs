@@ -24,7 +24,7 @@ pub struct TextForm {
     pub names: Vec<String>,
     /// The line of a row of units, counted from 1.
     pub units_line: Option<u64>,
-    /// Units of the columns, in the spelling of settings, from the row of units or behind the names; none where there is none or it is
+    /// Units of the columns, in the spelling of settings, from the row of units or behind the names; `None` where it is absent or
     /// not understood.
     pub units: Vec<Option<&'static str>>,
     /// The line of the first row, counted from 1.
@@ -56,7 +56,7 @@ pub struct StampColumn {
 }
 
 impl TextForm {
-    /// The form that the first lines show, turned into UTF-8 if `encoding` is UTF-16; nothing where they are no table of numbers.
+    /// The form that the first lines show, turned into UTF-8 if `encoding` is UTF-16; `None` unless they are a table of numbers.
     pub(crate) fn of(text: &[u8], encoding: Option<TextEncoding>) -> Option<Self> {
         let lines = data_lines(text);
         let texts: Vec<&[u8]> = lines.iter().map(|(_, line)| *line).collect();

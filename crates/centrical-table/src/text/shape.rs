@@ -24,7 +24,7 @@ pub(super) struct Shape {
 }
 
 impl Shape {
-    /// The shape that the first lines of a text show; nothing where they are no table of numbers.
+    /// The shape that the first lines of a text show; `None` where they are not a table of numbers.
     pub fn of(lines: &[&[u8]]) -> Option<Self> {
         let above = after_preamble(lines);
         let tail = &lines[above..][(lines.len() - above).saturating_sub(TAIL)..];

@@ -3,7 +3,7 @@
 
 use crate::random::Random;
 
-/// So many bytes at either end are damaged more often.
+/// Bytes at either end that are damaged more often.
 const NEAR: usize = 256;
 
 /// Words of the formats: of texts, of Thrift and flat buffers, of headers.

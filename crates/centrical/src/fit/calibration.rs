@@ -116,7 +116,7 @@ impl<'d> Calibration<'d> {
         self.fit
     }
 
-    /// Estimate of the parameter of that name, unless there is none or the data do not determine it.
+    /// Estimate of the parameter of that name, if it exists and the data determine it.
     pub fn value(&self, name: &str) -> Option<f64> {
         self.fit.value(self.data.model().parameters().find(name)?)
     }

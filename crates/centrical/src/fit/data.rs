@@ -16,7 +16,7 @@ impl<'m> Data<'m> {
     /// Plateau means of `model`.
     ///
     /// # Errors
-    /// [`FitError`] when an observation is invalid, or if there is none.
+    /// [`FitError`] when an observation is invalid, or without any.
     pub fn new(model: &'m MeasurementModel, observations: Vec<Observation>) -> Result<Self, FitError> {
         observations.iter().try_for_each(|observation| Self::check(model, observation))?;
         if observations.is_empty() { Err(FitError::Empty) } else { Ok(Self { model, observations }) }

@@ -15,7 +15,7 @@ const LINEAR: f64 = 0.1;
 pub(super) fn departs(data: &Data, linearisations: &[Linearisation], x: &DVector<f64>) -> Result<bool, FitError> {
     let missed = missed(data, &DVector::zeros(x.len()), std::slice::from_ref(x));
     let length = whitened(data, linearisations, &missed[1..])?.norm();
-    // Also where the length is no number.
+    // Also where the length is NaN.
     Ok(!matches!(length.partial_cmp(&LINEAR), Some(Ordering::Less)))
 }
 

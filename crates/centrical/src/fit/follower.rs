@@ -170,7 +170,7 @@ impl<'m> Follower<'m> {
     /// What they are expected to say with one plateau more, whose mean will have `covariance` [m^2/s^4].
     ///
     /// # Errors
-    /// [`FitError`] when there can be no such plateau.
+    /// [`FitError`] when such a plateau is impossible.
     pub fn expected(&self, set_point: usize, covariance: Matrix3<f64>) -> Result<Progress, FitError> {
         let set_points = &self.data.model().experiment().set_points;
         let unknown = FitError::Unknown { set_point, count: set_points.len() };

@@ -97,7 +97,7 @@ impl Gain {
         &self.basis
     }
 
-    /// Changes of the estimates, `p x m`, by changes of the readings of which the fit follows `Q^T W dy = followed`.
+    /// Changes of the estimates, `p x m`, by changes `dy` of the readings with `Q^T W dy = followed`.
     pub(crate) fn shifts(&self, followed: &DMatrix<f64>) -> DMatrix<f64> {
         self.parameters_of(followed)
     }

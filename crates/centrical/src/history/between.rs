@@ -32,7 +32,7 @@ pub struct Between {
     pub variance: f64,
     /// The interval that covers it with the `coverage` asked for (profile of Q).
     pub interval: [f64; 2],
-    /// Cochran's `Q(0)`: chi^2 if there is no such component.
+    /// Cochran's `Q(0)`: chi^2 without such a component.
     pub misfit: f64,
     /// Degrees of freedom `nu`.
     pub degrees_of_freedom: usize,

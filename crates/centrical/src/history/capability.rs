@@ -26,7 +26,7 @@ pub struct Index {
     pub interval: [f64; 2],
 }
 
-/// Capability of `values` between `lower` and `upper`, either of which may be absent, with intervals of probability `coverage`.
+/// Capability of `values` between `lower` and `upper`, each optional, with intervals of probability `coverage`.
 /// `None` below two values, without a limit, or without scatter.
 pub fn capability(values: &[f64], lower: Option<f64>, upper: Option<f64>, coverage: f64) -> Option<Capability> {
     let n = values.len();

@@ -1,7 +1,7 @@
 //! Control charts: individuals and moving range, EWMA, CUSUM, and the rules by which a chart gives a signal.
 //!
 //! D. C. Montgomery, "Introduction to Statistical Quality Control", chapters 6 and 9; L. S. Nelson, Journal of Quality Technology 16
-//! (1984) for the eight rules, of which 1, 5, 6 and 2 in the form of eight points are those of the Western Electric handbook (1956).
+//! (1984) for the eight rules; 1, 5, 6 and 2 in the form of eight points are those of the Western Electric handbook (1956).
 
 /// Expected range of two normal values, in standard deviations: `d2 = 2 / sqrt(pi)`.
 const D2: f64 = std::f64::consts::FRAC_2_SQRT_PI;

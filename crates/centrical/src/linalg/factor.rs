@@ -2,7 +2,7 @@
 //!
 //! `R` is upper triangular, `R^T R` is the information (inverse covariance) and `R^-1 b` the estimate; neither a
 //! covariance nor an inverse is ever formed by an update, so there is no symmetry or definiteness to lose, and a
-//! state of which nothing is known yet is a row of zeros. Rotations and not reflections, because rows of very
+//! state that is still unknown is a row of zeros. Rotations and not reflections, because rows of very
 //! different weight meet: a rotation takes from each row a multiple of the other of the size of the lighter one, so
 //! a weak prior keeps its digits beside a strong reading, where a reflection would leave it rounding of the
 //! strong one.

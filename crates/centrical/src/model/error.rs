@@ -28,7 +28,7 @@ pub enum FitError {
         /// Number of set points.
         count: usize,
     },
-    /// A covariance cannot be one.
+    /// A covariance is not positive definite.
     #[error(
         "plateau {}: found a covariance of the mean with diagonal {diagonal:?} that is not positive definite, \
          expected a positive definite matrix in m^2/s^4", set_point + 1

@@ -178,8 +178,8 @@ impl SetPoint {
         Self { mounting, omega, ..Self::default() }
     }
 
-    /// Whether it is the same plateau run again: equal set points, or speeds of which one at least was measured and which
-    /// agree to a thousandth.
+    /// Whether it is the same plateau run again: equal set points, or speeds that agree to a thousandth, at least one of
+    /// them measured.
     pub fn repeats(&self, other: &Self) -> bool {
         let is_measured = self.speed_uncertainty.is_some() || other.speed_uncertainty.is_some();
         let close = (self.omega - other.omega).abs() <= SAME_SPEED * other.omega.abs();

@@ -46,7 +46,7 @@ pub struct Linearisation {
     /// Standard uncertainty of the plateau's own rounding [m/s^2].
     pub rounding: f64,
     /// Where only gravity shows the attitude: the normal of all readings that a turn of the unit reaches, of length 1. What moves a mean
-    /// across it turns the unknown attitude, and is no error.
+    /// across it turns the unknown attitude, and is not an error.
     pub normal: Option<Vector3<f64>>,
     /// Non-zero columns of the Jacobian: (index of the parameter, `d f' / d x`), each index once.
     pub columns: Vec<(usize, Vector3<f64>)>,

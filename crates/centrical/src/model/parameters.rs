@@ -12,7 +12,7 @@ use super::parameter::{Parameter, coefficient, parameter};
 
 /// The unknowns of an experiment in the order of `X` [K5.4]: `alpha`, `delta` by position, `dR` by pair (by
 /// position when free), `drho`, `theta` by rest in a free attitude, `case_turn` where such attitudes are known, the coefficients of the error model, then the extensions
-/// as asked for. Where nothing is on an arm there is no `alpha` and no `drho`.
+/// as asked for. Without an arm `alpha` and `drho` are absent.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Parameters {
     list: Vec<Parameter>,
@@ -96,7 +96,7 @@ impl Parameters {
         Self { list, tilt, of_position, proof_mass, terms, extensions: first_extension }
     }
 
-    /// Unknowns of typical size with alternating signs: those of a unit of which nothing is known.
+    /// Unknowns of typical size with alternating signs: those of a wholly unknown unit.
     pub fn typical_alternating(&self) -> Vec<f64> {
         let sign = |j: usize| if j.is_multiple_of(2) { 1.0 } else { -1.0 };
         self.iter().enumerate().map(|(j, parameter)| sign(j) * parameter.typical).collect()
@@ -107,7 +107,7 @@ impl Parameters {
         self.list.len()
     }
 
-    /// Whether there are none.
+    /// Whether the list is empty.
     pub fn is_empty(&self) -> bool {
         self.list.is_empty()
     }

@@ -32,7 +32,7 @@ pub struct PriorUse {
     pub posterior_over_prior: f64,
 }
 
-/// Why a prior cannot be one.
+/// Why a prior is invalid.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum PriorError {
     /// The name stands for no parameter.
@@ -51,7 +51,7 @@ pub enum PriorError {
         /// Two of the units.
         units: [String; 2],
     },
-    /// The mean is no number.
+    /// The mean is not a finite number.
     #[error("prior {name:?}: found a mean of {found}, expected a finite number")]
     Mean {
         /// As given.
@@ -59,7 +59,7 @@ pub enum PriorError {
         /// As given.
         found: f64,
     },
-    /// The uncertainty is not one.
+    /// The uncertainty is not a positive number.
     #[error("prior {name:?}: found a standard uncertainty of {found}, expected a positive number")]
     NotPositive {
         /// As given.

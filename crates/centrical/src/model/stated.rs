@@ -12,7 +12,7 @@ use super::position::SwitchOn;
 use super::rival::Rival;
 use crate::statistics::bias_variance;
 
-/// Standard uncertainties that a laboratory states (GUM type B), SI; zero where there is none.
+/// Standard uncertainties that a laboratory states (GUM type B), SI; zero if not stated.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TypeB {
     /// Of local gravity [m/s^2].

@@ -74,7 +74,7 @@ impl Addition {
                 draft.add(mountings.iter().map(|&mounting| SetPoint::spinning(mounting, *omega)));
             }
             Self::Prior { parameter, standard_uncertainty } => {
-                // A prior that cannot be one adds nothing.
+                // An invalid prior adds nothing.
                 model = study.model().clone().with_prior(parameter, *standard_uncertainty).ok();
             }
             Self::Radius { positions, radius } => {

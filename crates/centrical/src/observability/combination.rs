@@ -10,7 +10,7 @@ pub struct Combination {
     terms: Vec<(usize, f64)>,
 }
 
-/// Why a text is no linear combination.
+/// Why a text is not a linear combination.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[error("combination, character {at}: found {found}, expected {expected}")]
 pub struct CombinationError {
@@ -39,7 +39,7 @@ impl Combination {
     /// Reads a sum of parameters with numbers before them, with or without `*`.
     ///
     /// # Errors
-    /// [`CombinationError`] when the text is not one, with the place.
+    /// [`CombinationError`] with the place, when the text is not such a sum.
     pub fn parse(text: &str, parameters: &Parameters) -> Result<Self, CombinationError> {
         let mut scanner = Scanner { text, at: 0 };
         let mut terms = Vec::new();
@@ -98,7 +98,7 @@ struct Scanner<'t> {
 }
 
 impl<'t> Scanner<'t> {
-    /// The text that is left, from its first character that is no blank.
+    /// The remaining text, from its first non-blank character.
     fn rest(&mut self) -> &'t str {
         let text = &self.text[self.at..];
         self.at += text.len() - text.trim_start().len();
@@ -125,7 +125,7 @@ impl<'t> Scanner<'t> {
         Ok(sign)
     }
 
-    /// A number before a parameter, 1 if there is none.
+    /// The number before a parameter, 1 if absent.
     fn number(&mut self) -> f64 {
         let rest = self.rest();
         let digits = rest.find(|c: char| !c.is_ascii_digit() && c != '.').unwrap_or(rest.len());

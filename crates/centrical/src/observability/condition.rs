@@ -34,11 +34,11 @@ pub struct Condition {
 /// Whether an experiment needs a condition.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Need {
-    /// Met, and without it so many more combinations would be lost.
+    /// Met; without it this number of further combinations would be lost.
     Holds(usize),
     /// Met, and without it no more would be lost.
     Spare,
-    /// Not met, and meeting it would bring back so many of the lost combinations.
+    /// Not met; meeting it would bring back this number of the lost combinations.
     WouldBringBack(usize),
     /// Not met, and meeting it would bring nothing back, if anything is lost at all.
     Dispensable,

@@ -1,4 +1,4 @@
-//! Groups of parameters that the data hardly tell apart.
+//! Groups of parameters that the data hardly separate.
 
 use nalgebra::DMatrix;
 
@@ -9,10 +9,10 @@ pub const STRONG_CORRELATION: f64 = 0.99;
 /// Two collinear parameters belong to one group when they share half of their variance.
 const SHARED_VARIANCE: f64 = 0.5;
 
-/// Parameters each of which is nearly a combination of the others: its column has a multiple correlation of at
+/// Parameters, each nearly a combination of the others: its column has a multiple correlation of at
 /// least [`STRONG_CORRELATION`] with all other columns, so its standard uncertainty is at least seven times what it
 /// would be with the others known. A pair with a correlation of 0.99 is such a group; so are three or more
-/// parameters of which no two are correlated that much.
+/// parameters without a pair correlated that much.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CorrelatedGroup {
     /// Indices of the parameters.

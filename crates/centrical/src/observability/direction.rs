@@ -84,8 +84,8 @@ fn shortened(terms: &[(usize, f64)], parameters: &Parameters) -> String {
     format!("{} + ... ({} terms)", sum_text(&terms[..READABLE - 2], parameters), terms.len())
 }
 
-/// Simplest basis of the null space `basis` (`p x k`, orthonormal, scaled columns), of which components below `rounding`
-/// are none; `norms` lead back to units.
+/// Simplest basis of the null space `basis` (`p x k`, orthonormal, scaled columns); components below `rounding`
+/// count as zero, and `norms` lead back to units.
 pub(super) fn simplest(basis: &DMatrix<f64>, norms: &DVector<f64>, rounding: f64) -> Vec<NullDirection> {
     if basis.ncols() == 0 {
         return Vec::new();

@@ -176,7 +176,7 @@ impl Observability {
         Some((self.root().transpose() * scaled).norm())
     }
 
-    /// Groups of estimable parameters that the data hardly tell apart: see [`CorrelatedGroup`].
+    /// Groups of estimable parameters that the data hardly separate: see [`CorrelatedGroup`].
     pub fn correlated_groups(&self) -> Vec<CorrelatedGroup> {
         correlation::groups(&self.covariance_scaled(), |j| self.is_estimable(j))
     }

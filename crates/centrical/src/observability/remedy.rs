@@ -10,7 +10,7 @@ use super::rank::Observability;
 use super::study::Study;
 use crate::model::{Effect, Kind, PairRelation, Position, rotation};
 
-/// Two angles, speeds or radii closer than this part of the largest are one: a schedule's "180 deg" is no new angle
+/// Two angles, speeds or radii closer than this part of the largest are one: a schedule's "180 deg" is not a new angle
 /// beside 3.1416 rad.
 const SAME: f64 = 1e-3;
 

@@ -24,7 +24,7 @@ impl Study {
     /// lost there is lost for good, though second-order traces of it may show elsewhere.
     ///
     /// # Errors
-    /// [`FitError`] when a weight names no plateau or is no covariance, or when numbers overflow.
+    /// [`FitError`] when a weight names no plateau or is not a covariance, or when numbers overflow.
     pub fn at_zero(model: MeasurementModel, weights: Vec<Weight>) -> Result<Self, FitError> {
         check(&model, &weights)?;
         let set_points = &model.experiment().set_points;

@@ -107,7 +107,7 @@ impl Candidates {
         self.experiment().set_points.len()
     }
 
-    /// Whether there are none.
+    /// Whether the list is empty.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }

@@ -292,7 +292,7 @@ impl LinearisedScenario {
     /// than there is.
     pub fn value_after(&self, factor: &Factor, insight: &Insight, dn: &Matrix3<f64>) -> f64 {
         let system = Matrix3::identity() + insight.a * dn;
-        // Positive for any gain; a loss of nearly all that is known along a direction is no number to rely on.
+        // Positive for any gain; a loss of nearly all that is known along a direction is not a reliable number.
         if system.determinant() < 1e-9 {
             return f64::INFINITY;
         }

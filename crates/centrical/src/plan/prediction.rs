@@ -3,7 +3,7 @@
 //! The budget of a fit of perfect readings, with the covariances that the plateaus are expected to have: the same computation
 //! that a calibration makes of its data, so that what is predicted is what will be stated.
 //!
-//! **Where the rank is short** a unit without errors is no point to predict at. Products of two unknowns couple a lost
+//! **With a short rank** a unit without errors is not a point to predict at. Products of two unknowns couple a lost
 //! combination to the others wherever these are not zero, be it by their errors of estimation alone: at zero the scatter of
 //! calibrations of [K5.5] as printed is 1.12 times the prediction in `delta_2[3]`, and as much with a hundredth of the noise.
 //! Away from zero the two agree. So such a plan is predicted for a unit of typical errors, signs in turn, as
@@ -99,7 +99,7 @@ impl Prediction {
         &self.budget
     }
 
-    /// Combined standard uncertainty of parameter `j`, if it is determined and told by it
+    /// Combined standard uncertainty of parameter `j`, if it is determined and informative
     /// ([`crate::Parameter::is_informative`]) [its unit].
     pub fn standard_uncertainty(&self, j: usize) -> Option<f64> {
         self.budget.standard_uncertainty(j).filter(|u| self.model.parameters()[j].is_informative(*u))

@@ -1,7 +1,7 @@
 //! Records that are copies of each other, trimmed, shifted in time, resampled or rounded.
 //!
 //! Means of two records of one mounting differ by the noise of both at least; speeds and a second mounting of the unit add to that. Means of
-//! a copy differ by the noise of the samples that it lacks. So differences far below the noise are no chance. Either estimate of
+//! a copy differ by the noise of the samples that it lacks. So differences far below noise are not chance. Either estimate of
 //! the noise of a mean may be too large: white noise, if the noise is blue as behind a sigma-delta converter; the noise of the session, if it holds
 //! a drift. The smaller one counts.
 

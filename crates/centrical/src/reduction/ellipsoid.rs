@@ -61,7 +61,7 @@ impl Ellipsoid {
         Self::of_quadric(std::array::from_fn(|k| x[k]), &Vector3::zeros(), &Vector3::repeat(unit))
     }
 
-    /// Of the coefficients `x` of [`terms`] of readings `middle + unit y`; `None` if that is no ellipsoid.
+    /// Of the coefficients `x` of [`terms`] of readings `middle + unit y`; `None` if that is not an ellipsoid.
     fn of_quadric(x: [f64; 9], middle: &Vector3<f64>, unit: &Vector3<f64>) -> Option<Self> {
         let a = Matrix3::new(x[0], x[6], x[7], x[6], x[1], x[8], x[7], x[8], x[2]);
         let centre = a.cholesky()?.solve(&Vector3::new(x[3], x[4], x[5])) * -0.5;

@@ -29,7 +29,7 @@ const FARTHEST: f64 = 6.0;
 /// A constant and two components of the motion.
 const LINEAR: usize = 3;
 
-/// A part is known no better than this: one part for all motion of a record is no finer.
+/// Least uncertainty of a part: one part for all motion of a record resolves no more.
 const SHARPEST: f64 = 5e-3;
 
 /// Points of the posterior distribution of a part between 0 and 1.

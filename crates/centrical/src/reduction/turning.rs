@@ -17,7 +17,7 @@
 //! What is noise along the force shows in the size of the readings by that ellipsoid, over whole stretches of rotation. Noise that changes the
 //! size is that along the normal of the ellipsoid: a reading itself points elsewhere by as much as its bias, and what trembles across the
 //! force, a thousand times stronger in a hand, would be taken for noise along it. Proof masses beside the axes are accelerated by their place
-//! times the second derivative of the vertical. That is no noise either, and is taken out.
+//! times the second derivative of the vertical. That is not noise either, and is taken out.
 
 use std::f64::consts::TAU;
 

@@ -40,7 +40,7 @@ pub struct Analysis {
 /// a second, however long the series.
 ///
 /// # Errors
-/// [`NoiseError`] if the readings are no series: too few, or hardly any two of them evenly spaced;
+/// [`NoiseError`] if the readings are not a series: too few, or hardly any two of them evenly spaced;
 /// [`NoiseError::Stopped`].
 pub fn analyse(
     t: &[f64],

@@ -2,8 +2,8 @@
 
 use statrs::function::gamma::gamma_ur;
 
-/// Probability that chi^2 with `nu` degrees of freedom exceeds `chi_squared`; 1 without any degree, 0 if it is no finite
-/// number.
+/// Probability that chi^2 with `nu` degrees of freedom exceeds `chi_squared`; 1 without any degree, 0 if it is not a
+/// finite number.
 pub fn chi_squared_tail(chi_squared: f64, nu: usize) -> f64 {
     if nu == 0 || chi_squared <= 0.0 {
         1.0

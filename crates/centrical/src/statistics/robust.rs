@@ -59,7 +59,7 @@ pub(crate) fn cut(n: usize) -> f64 {
 
 /// Robust standard deviation of readings whose last digit is `step`, by the median size of their deviations.
 ///
-/// The median of rounded sizes is rounded, too: half a step is added, so that it is no smaller than that of the noise. Steps of
+/// The median of rounded sizes is rounded, too: half a step is added, so that it is not below that of the noise. Steps of
 /// twice the noise leave half the deviations zero.
 pub(crate) fn spread(median_size: f64, step: f64) -> f64 {
     MAD * (median_size + 0.5 * step)

@@ -92,7 +92,7 @@ struct Residuals {
     scatter: (DVector<f64>, DVector<f64>),
     /// `B^T D`.
     across: DMatrix<f64>,
-    /// `D^T D` and `D^T e`; zero where drift is no question.
+    /// `D^T D` and `D^T e`; zero unless drift is asked for.
     drift: (DMatrix<f64>, DVector<f64>),
     is_drift_asked: bool,
 }

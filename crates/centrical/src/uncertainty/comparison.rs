@@ -42,7 +42,7 @@ pub struct Difference {
     /// `E_n = d / sqrt(U_A^2 + U_B^2)` with expanded uncertainties, `k = 2` (ISO/IEC 17043): beyond 1 in size the two
     /// disagree. Of parameters that have not changed one in twenty is beyond 1.
     pub e_n: f64,
-    /// Probability that any of the compared parameters differs by so many of its uncertainties if nothing has changed
+    /// Probability that any of the compared parameters differs by as many of its uncertainties if nothing has changed
     /// (Bonferroni).
     pub probability: f64,
 }
@@ -93,7 +93,7 @@ pub fn compare(a: &Estimates, b: &Estimates) -> Comparison {
     Comparison { differences, chi_squared, probability }
 }
 
-/// `e^T C^-1 e`, by the Cholesky factor of the correlation matrix; `None` if `C` is no covariance.
+/// `e^T C^-1 e`, by the Cholesky factor of the correlation matrix; `None` if `C` is not a covariance.
 pub(super) fn weighted_square(errors: impl Iterator<Item = f64>, covariance: &DMatrix<f64>) -> Option<f64> {
     let u = covariance.diagonal().map(f64::sqrt);
     let correlation = DMatrix::from_fn(u.len(), u.len(), |i, j| covariance[(i, j)] / (u[i] * u[j]));

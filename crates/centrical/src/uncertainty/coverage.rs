@@ -7,7 +7,7 @@ use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
 pub enum Degrees {
     /// The uncertainty itself is taken as exact.
     Infinite,
-    /// So many.
+    /// A finite number.
     Finite(f64),
 }
 

@@ -164,7 +164,7 @@ fn pairs(model: &MeasurementModel, single: &[(&Candidate, Calibration)]) -> Vec<
 /// Fits all `candidates` to the same plateaus and compares them.
 ///
 /// # Errors
-/// [`FitError`] when an observation cannot be one, or when there is no candidate ([`FitError::Empty`]).
+/// [`FitError`] when an observation is invalid, or without a candidate ([`FitError::Empty`]).
 pub fn select(
     candidates: &[Candidate],
     observations: &[Observation],

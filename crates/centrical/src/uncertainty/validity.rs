@@ -6,7 +6,7 @@
 //! `T = e_b^T (E - H_bb)^-1 e_b`
 //!
 //! is the fall of chi^2 when the block is left out: chi^2 of as many degrees of freedom as the block has redundant
-//! readings. Divided by what is left of chi^2 it is an F statistic that does not depend on the scale of the weights.
+//! readings. Divided by the remaining chi^2 it is an F statistic that does not depend on the scale of the weights.
 
 use nalgebra::{DMatrix, DVector, SymmetricEigen, Vector3};
 use statrs::function::beta::beta_reg;

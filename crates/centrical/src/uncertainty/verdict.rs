@@ -106,7 +106,7 @@ pub enum Objection<P, Q, R, S> {
         /// Probability of so large a chi^2.
         chance: f64,
     },
-    /// Parameters of the instrument are not determined. Lost geometry alone is no objection.
+    /// Parameters of the instrument are not determined. Lost geometry alone is not an objection.
     NotDetermined(Vec<String>),
 }
 
@@ -162,7 +162,7 @@ pub fn objections<P, Q, R, S>(findings: Findings<P, Q, R, S>) -> Vec<Objection<P
     objections
 }
 
-/// Probability of so large a chi^2 by chance. Noise that is not known is no stronger than that by which chi^2 is `of_strongest_noise`,
+/// Probability of a chi^2 as large by chance. Unknown noise is at most as strong as that by which chi^2 is `of_strongest_noise`,
 /// but for a chance of [`EXCLUDED`]: the largest probability over all noise that is not excluded, plus that chance (Berger and Boos 1994).
 pub fn chance_of_residuals(chi_squared: f64, degrees_of_freedom: usize, of_strongest_noise: Option<f64>) -> f64 {
     let chance = |chi_squared| chi_squared_tail(chi_squared, degrees_of_freedom);
@@ -189,7 +189,7 @@ mod tests {
         })
     }
 
-    /// Slow noise that doubles the variance of slopes is no drift; what is beyond it is one.
+    /// Slow noise that doubles the variance of slopes is not drift; a slope beyond it is.
     #[test]
     fn drift_is_beyond_slow_noise() {
         for chi_squared in [250.0, 330.0, 600.0] {

@@ -144,7 +144,7 @@ fn what_a_cube_shows() {
     assert_eq!(shown(&rests_alone(&cube(), 2)).len(), 9);
     let squares = shown(&rests_alone(&faces(), 3));
     assert_eq!(squares, ["G0_11", "G0_22", "G0_33"]);
-    // Nothing of an arm is asked for where there is none.
+    // Nothing of an arm is asked for without an arm.
     let model = rests_alone(&faces(), 2);
     let names: Vec<&str> = model.parameters().iter().map(|p| p.name.as_str()).collect();
     assert!(names.iter().all(|name| name.starts_with("theta") || name.starts_with("df") || name.starts_with("G0")));
@@ -477,7 +477,7 @@ fn volume(study: &Study) -> f64 {
     0.5 * covariance.determinant().ln()
 }
 
-/// Rests alone are not told to spin.
+/// Remedies of rests alone do not ask for speeds.
 #[test]
 fn remedies_of_rests_are_attitudes() {
     let model = rests_alone(&faces(), 2);

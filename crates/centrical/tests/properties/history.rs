@@ -41,7 +41,7 @@ fn alone(series: &Series, curve: Curve) -> Between {
     Between::of(std::slice::from_ref(series), curve, COVERAGE).unwrap()
 }
 
-/// The same result with other days is no drift; one that lies on a line to the last digit is one.
+/// The same result with other days is not a drift; one that lies on a line to the last digit is.
 #[test]
 fn sessions_without_scatter_have_a_slope_and_its_probability() {
     let quantiles = Quantiles::default();
@@ -125,7 +125,7 @@ fn unequal_uncertainties_raise_no_drift() {
     assert!(found < 0.008 && (0.92..0.97).contains(&covered), "{found} {covered}");
 }
 
-/// A unit that moves to another station after half of its sessions: the errors of the stations, three times those of a session, are no component
+/// A unit that moves to another station after half its sessions: the errors of the stations, three times those of a session, are not a component
 /// between sessions, whose interval covers as before; and the sessions agree. Of 1000, three standard deviations are 2.1 %.
 #[test]
 fn a_move_to_another_station_is_no_scatter() {

@@ -82,7 +82,7 @@ fn the_sense_of_rotation_is_seen_in_the_ramps() {
     }
 }
 
-/// A unit with errors of two percent, seen through all dirt, is no mistake; nor is one speed without a ramp.
+/// A unit with errors of two percent, seen through all dirt, is not a mistake; nor is one speed without a ramp.
 #[test]
 fn good_records_are_not_blamed() {
     for seed in 0..40 {

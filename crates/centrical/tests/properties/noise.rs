@@ -96,7 +96,7 @@ fn terms_are_recovered_within_their_uncertainty_and_absent_ones_are_not_claimed(
     }
 }
 
-/// A term too weak to be told is not named, and its upper bound covers it in 95 % of the records.
+/// A term too weak to be found is not named, and its upper bound covers it in 95 % of the records.
 #[test]
 fn a_weak_term_is_bounded_not_named() {
     let weak = [

@@ -178,7 +178,7 @@ fn small_plans_are_mostly_the_best_of_all() {
     assert!(found.len() >= 55, "{}", found.len());
 }
 
-/// So it is for several scenarios of which none is the worst for all plans: much white noise; little of it but a floor that
+/// So it is for several scenarios, none the worst for all plans: much white noise; little of it but a floor that
 /// longer plateaus do not lower; an elastic turn; a unit with errors.
 #[test]
 fn small_plans_are_mostly_the_best_in_the_worst_case() {
@@ -630,8 +630,8 @@ fn least_times_for_goals_are_below_all_that_keep_them() {
     assert!(ratios[ratios.len() / 2] < 1.02 && bounds[bounds.len() / 2] > 0.75);
 }
 
-/// Where time hardly suffices for the set-ups, whole visits do not lose what they are there for: some mountings are tried of which
-/// rounding loses a parameter.
+/// Where time hardly suffices for the set-ups, whole visits do not lose what they are there for: some mountings are tried that
+/// lose a parameter to rounding.
 #[test]
 fn plans_of_little_time_see_what_they_are_to_see() {
     let candidates = large(8, &[30.0, 60.0]);

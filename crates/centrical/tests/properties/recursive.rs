@@ -459,7 +459,7 @@ fn twice(experiment: &Experiment) -> Experiment {
     Experiment { set_points: set_points.collect(), ..experiment.clone() }
 }
 
-/// Follows a session of which one plateau is off, and takes that one out of the data.
+/// Follows a session with one plateau off, and takes that one out of the data.
 fn follow<'m>(model: &'m MeasurementModel, data: &mut Vec<Observation>) -> Follower<'m> {
     const BAD: usize = 61;
     // 50 ug, where means are known to 5 and the speed's 4 mg is along the arm.

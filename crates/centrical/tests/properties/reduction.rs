@@ -159,7 +159,7 @@ fn what_drifts_at_each_speed_is_no_noise_of_it() {
     assert!(mean > 10.5, "{mean}");
 }
 
-/// What the time constant of the settling is off by is no slow noise: the settling starts at ten thousand times the white
+/// The error of the settling's time constant is not slow noise: the settling starts at ten thousand times the white
 /// noise, and the pooled density at zero frequency is that of the same noise without settling. Taken for noise it would
 /// raise it by a twentieth.
 #[test]
@@ -234,7 +234,7 @@ fn drift_of_a_steady_plateau_is_within_its_uncertainty() {
     assert!((mean - 1.0).abs() < 0.35, "{mean}");
 }
 
-/// What the time constant of the settling is off by tilts all plateaus of a mounting: it is no drift. Of 10 sessions of 216
+/// The error of the settling's time constant tilts all plateaus of a mounting: it is not a drift. Of 10 sessions of 216
 /// slopes the mean square is 1 +- 0.03, and the pooled density of the noise is known to about 0.03; four times both. Slopes
 /// that share the error of the time constant have 1.5 in short plateaus and 10 with little noise.
 #[test]
@@ -261,7 +261,7 @@ fn the_tail_of_the_settling_is_no_drift() {
     }
 }
 
-/// A speed that runs by 1e-4 over its plateau is no settling: each mean is that of the middle, to a tenth of the run.
+/// A speed that runs by 1e-4 over its plateau is not settling: each mean is that of the middle, to a tenth of the run.
 /// The telemetry shows its slope to a twentieth or better, by reports to 1e-5 rad/s.
 #[test]
 fn a_speed_that_runs_is_no_settling() {
@@ -352,8 +352,8 @@ fn in_stretches_as_whole() {
     }
 }
 
-/// A plateau whose samples come in parts is the same up to a few samples at the limit, each of which moves the mean by a tenth of its
-/// standard error; and as many samples are told to be missing and repeated.
+/// A plateau whose samples come in parts is the same up to a few samples at the limit; each moves the mean by a tenth of its
+/// standard error. As many samples are reported as missing and as repeated.
 #[test]
 fn in_parts_as_whole() {
     let mut squares = Vec::new();
@@ -602,7 +602,7 @@ fn a_plateau_read_by_a_stuck_sensor_is_refused() {
     assert!(matches!(error, ReductionError::Stuck { index: 2, axis: 1, value: -0.7, .. }), "{error}");
 }
 
-/// Steps of five times the noise hold a reading still for as long as its level stays: that is no stuck newtonometer. The
+/// Steps of five times the noise hold a reading still while its level stays: that is not a stuck newtonometer. The
 /// squared error over the stated covariance is 1 on average over levels anywhere between two steps, 1/6 to 3 of one session.
 #[test]
 fn coarse_steps_are_not_stuck() {

@@ -383,7 +383,7 @@ pub fn noise_along_force(made: &Made, radius: Option<f64>) -> f64 {
     rests.iter().map(of).sum::<f64>() / rests.len() as f64
 }
 
-/// However large the bias is, what trembles across the force is no noise along it: a bias turns readings by 10 deg here, and across the noise is
+/// However large the bias, what trembles across the force is not noise along it: a bias turns readings by 10 deg here, and across the noise is
 /// forty times as large and more.
 pub fn assert_a_bias_leaves_the_noise(mut made: Made, radius: Option<f64>) {
     let before = noise_along_force(&made, radius);

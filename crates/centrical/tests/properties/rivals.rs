@@ -144,7 +144,7 @@ fn sound_sessions_are_left_alone() {
     let others = judged.iter().filter(|(_, p)| Level::Objection.is_passed_by(*p)).count();
     println!("{} of 300 reported, {} and {others} objected to", rivals(Level::Reported), rivals(Level::Objection));
     assert_eq!((rivals(Level::Objection), others), (0, 0));
-    // 8 %: Holm keeps 5 %, of which three standard deviations of chance in 300 sessions make 8.8 %.
+    // 8 %: Holm keeps 5 %, which three standard deviations of chance in 300 sessions make 8.8 %.
     assert!(rivals(Level::Reported) <= 24);
 }
 

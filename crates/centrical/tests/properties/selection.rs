@@ -84,8 +84,8 @@ fn the_true_model_is_recommended() {
     assert!(best.against.unwrap().probability < 1e-12);
 }
 
-/// A rival whose unknowns the data do not determine fits as well as the model without it, and is no candidate: a lateral shift of a seat is
-/// what the shifts of the unit follow.
+/// A rival whose unknowns the data do not determine fits as well as the model without it, and is not a candidate: a lateral shift of a seat
+/// is what the shifts of the unit follow.
 #[test]
 fn rivals_that_are_not_seen_are_no_candidates() {
     let model = source_model();

@@ -134,7 +134,7 @@ fn a_bias_leaves_the_noise_of_arcs() {
     assert_a_bias_leaves_the_noise(turned(&trembling, &rotation, &mut Random::new(18)), Some(0.0));
 }
 
-/// The acceleration of proof masses beside the axis is no noise of theirs: 200 mm from it three times the noise of an arc and more.
+/// Acceleration of proof masses beside the axis is not noise of theirs: 200 mm from it three times the noise of an arc and more.
 #[test]
 fn a_place_beside_the_axis_leaves_the_noise() {
     let noise = |radius: f64| {

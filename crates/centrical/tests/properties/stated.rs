@@ -81,7 +81,7 @@ fn data_sharpen_a_loose_statement() {
         let ratio = budget.standard_uncertainty(j).unwrap() / fit.standard_uncertainty(j).unwrap();
         assert!((ratio - 1.0).abs() < 1e-6, "{j}: {ratio}");
     }
-    // Two seats: their mean cannot be told from dR_1, their difference can.
+    // Two seats: their mean cannot be separated from dR_1, their difference can.
     let known = |deviations: &[(f64, f64)]| deviations.iter().map(|(_, u)| *u).fold(1.0_f64, f64::min);
     assert_eq!(fit.deviations().len(), 2);
     let sharpened = known(&fit.deviations());

@@ -47,7 +47,7 @@ fn no_stretches() {
     assert!(steady_stretches(&t[..3], &[1.0; 3]).is_empty());
 }
 
-/// White noise, a random walk, a drift and a sine about zero are no staircases.
+/// White noise, a random walk, a drift and a sine about zero are not staircases.
 #[test]
 fn noise_is_no_staircase() {
     for seed in 0..20 {

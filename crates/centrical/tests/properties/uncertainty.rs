@@ -87,7 +87,7 @@ fn budget_of_the_weights_is_the_covariance_of_the_fit() {
     }
 }
 
-/// One quantity of the experiment, off by so many standard uncertainties.
+/// One quantity of the experiment, off by a number of standard uncertainties.
 type Influence = Box<dyn Fn(&mut Experiment, f64)>;
 
 /// Every source that the budget knows and the independent influences that it is made of, written anew.

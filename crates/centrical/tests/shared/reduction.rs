@@ -48,7 +48,7 @@ fn windows_and_means(name: &str) {
     assert!((ratio - 1.0).abs() < 4.0 * (2.0 / freedom).sqrt(), "{name}: {ratio:.3} on {freedom} degrees of freedom");
 }
 
-/// `e^T C^-1 e` with the part along `d` free: what is left of it after the best multiple of `d`, and its degrees of
+/// `e^T C^-1 e` with the part along `d` free: the remainder after the best multiple of `d`, and its degrees of
 /// freedom.
 fn squared_error(e: &Vector3<f64>, c: &Matrix3<f64>, d: &Vector3<f64>) -> (f64, f64) {
     let factor = c.cholesky().expect("a covariance is positive definite");

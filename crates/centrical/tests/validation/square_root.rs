@@ -12,7 +12,7 @@ use num_traits::{ToPrimitive, Zero};
 
 use crate::common::Random;
 
-/// Bias, scale, quadratic and cubic of one newtonometer, and two turns of which only the sum is ever read.
+/// Bias, scale, quadratic and cubic of one newtonometer, and two turns that are read as a sum only.
 const STATES: usize = 6;
 
 /// Typical sizes of the states, SI.

@@ -78,7 +78,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     Ok(Outcome::acceptable(report.is_acceptable()))
 }
 
-/// Units by model and serial number: either may be empty, and tell two units apart.
+/// Units by model and serial number: either may be empty, and distinguish two units.
 fn several(units: &[Vec<Calibrated>]) -> String {
     let named = |unit: &Vec<Calibrated>| format!("model {:?} serial {:?}", unit[0].unit_model, unit[0].unit_serial);
     let listed = units.iter().take(SHOWN).map(named).collect::<Vec<_>>().join(", ");

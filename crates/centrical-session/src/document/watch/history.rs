@@ -94,7 +94,7 @@ impl HistoryEntry {
 pub fn append_history(file: &Path, entry: &HistoryEntry) -> Result<(), Error> {
     let line = json::line("watch-history.jsonl", entry)?;
     let mut open = OpenOptions::new();
-    // What is no file of its own is not followed: a link, a pipe.
+    // Only a regular file is followed, not a link or a pipe.
     let is_other = fs::symlink_metadata(file).is_ok_and(|metadata| !metadata.is_file());
     let opened = if is_other {
         Err(io::Error::other("found something that is no regular file, expected the history or a free name"))
@@ -121,7 +121,7 @@ fn ended(text: &str) -> &str {
 /// Reads a history, without a line at its end that is there in part.
 ///
 /// # Errors
-/// [`Error`] when the file cannot be read or a line of it is no state.
+/// [`Error`] when the file cannot be read or a line of it is not a state.
 pub fn read_history(file: &Path) -> Result<Vec<HistoryEntry>, Error> {
     let expected = "the history of a watch";
     let text = read_result(file, expected)?;

@@ -68,7 +68,7 @@ fn is_zero(count: &usize) -> bool {
     *count == 0
 }
 
-/// Numbers beyond this are no means of readings [m/s^2] or covariances of them.
+/// Numbers beyond this are neither means of readings [m/s^2] nor their covariances.
 const LARGEST: f64 = 1e12;
 
 impl WatchState {

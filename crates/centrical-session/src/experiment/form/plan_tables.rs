@@ -8,7 +8,7 @@ use serde::Deserialize;
 use super::entries::{AttitudeList, Steps};
 use crate::quantity::Quantity;
 
-/// The noise that a plan reckons with.
+/// The noise that a plan assumes.
 #[derive(Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub(crate) struct PlanTable {

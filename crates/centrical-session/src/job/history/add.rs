@@ -18,8 +18,8 @@ const BATCH: usize = 256;
 /// below. A result that is there already changes nothing. `progress` is called with the number of results read.
 ///
 /// # Errors
-/// [`Error`] naming the file that is no result or is one of the store, the place, what was found and what was expected. Results before one
-/// that is no result may be added.
+/// [`Error`] naming the file that is not a result or is one of the store, the place, what was found and what was expected. Results before
+/// one that is not a result may be added.
 pub fn add_results(
     folder: &Path,
     results: &[PathBuf],

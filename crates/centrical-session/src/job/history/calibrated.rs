@@ -224,7 +224,7 @@ impl Calibrated {
         self.parameters.iter().position(|p| p.name == name).filter(|&j| self.values[j].is_finite())
     }
 
-    /// What tells units apart.
+    /// What distinguishes units.
     pub fn unit(&self) -> (&str, &str) {
         (&self.unit_model, &self.unit_serial)
     }
@@ -244,7 +244,7 @@ impl Calibrated {
         self.of_data.as_ref().is_some_and(|data| data.rests_on_priors[place])
     }
 
-    /// What a history takes of this session: the data alone; as it is stated, where that is asked for or there are no priors.
+    /// What a history takes of this session: the data alone; as it is stated, where that is asked for or it has no priors.
     fn seen(&self, basis: Basis) -> Seen<'_> {
         match (&self.of_data, basis) {
             (Some(data), Basis::Data) => {

@@ -25,7 +25,7 @@ pub fn today() -> i64 {
 /// asked again and again.
 ///
 /// # Errors
-/// [`Error`] if the folder is no store, a part is damaged, or a copy cannot be read. [`Error::Stopped`].
+/// [`Error`] if the folder is not a store, a part is damaged, or a copy cannot be read. [`Error::Stopped`].
 pub fn check_store(
     folder: &Path,
     selection: Selection,
@@ -181,7 +181,7 @@ impl<'a> Copies<'a> {
 /// What a copy is expected to be.
 const COPY: &str = "the copy of a result";
 
-/// The hashes of files that are no experiment file, whatever their names and order; `None` if there are no others.
+/// The hashes of files other than experiment files, whatever their names and order; `None` without any.
 fn measured(files: Vec<Input>) -> Option<String> {
     let is_measured = |file: &Input| !file.path.to_ascii_lowercase().ends_with(".toml");
     let mut hashes: Vec<String> = files.into_iter().filter(is_measured).map(|file| file.sha256).collect();

@@ -12,7 +12,7 @@ use crate::store::{Selection, Store};
 /// The calibrations that a selection picks, by unit and day, and the sessions that failed last. `progress` is asked at each row group, with none done.
 ///
 /// # Errors
-/// [`Error`] if the folder is no store, or a part is damaged; [`Error::Stopped`].
+/// [`Error`] if the folder is not a store, or a part is damaged; [`Error::Stopped`].
 pub fn list_store(folder: &Path, selection: Selection, progress: OnProgress) -> Result<HistoryList, Error> {
     let rows = Store::open(folder)?.rows(selection, progress)?.collect::<Result<Vec<_>, _>>()?;
     Ok(HistoryList::new(&folder.display().to_string(), without_superseded(folder, rows)?))

@@ -30,7 +30,7 @@ pub struct OfData {
 /// Name of the shared error of priors that no data correct.
 pub const PRIORS: &str = "priors";
 
-/// A combination of which the data have less than this part of the information rests on priors.
+/// A combination rests on priors if the data have less than this part of its information.
 const LEAST: f64 = 1e-6;
 
 /// A parameter rests on priors if they leave more than this part of its variance in combinations that do.

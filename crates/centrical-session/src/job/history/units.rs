@@ -80,7 +80,7 @@ pub fn units_history(compared: &ComparedUnits, request: &UnitsHistoryRequest) ->
     })
 }
 
-/// Mean of one parameter over the calibrations of each unit, all of which determine it.
+/// Mean of one parameter over the calibrations of each unit; all determine it.
 pub fn unit_means(units: &[Vec<Calibrated>], name: &str) -> Vec<f64> {
     let mut finder = Finder::new(name);
     let mean = |unit: &Vec<Calibrated>| {
@@ -128,7 +128,7 @@ fn parameter(
     })
 }
 
-/// The sessions of units at one station, each unit by its number. Type B that these share would tell units of two stations apart.
+/// The sessions of units at one station, each unit by its number. Type B that these share would separate units of two stations.
 type AtStation<'a> = Vec<(usize, Vec<&'a Calibrated>)>;
 
 /// The sessions of `units`, station by station.

@@ -180,7 +180,7 @@ fn take_time(file: &mut FileColumns) {
     }
 }
 
-/// Rates of turn: one is the speed where there is no other; three without a unit may be readings in g.
+/// Rates of turn: one is the speed if that is missing; three without a unit may be readings in g.
 fn take_rates(file: &mut FileColumns, rates: Vec<Label>) {
     match rates.as_slice() {
         [rate] if file.speed.is_none() && file.readings.len() != 3 => file.speed = Some(rate.clone()),

@@ -12,7 +12,7 @@ use crate::error::Error;
 /// Analyses the readings of a file by the estimators. `progress` is asked again and again, with no bytes.
 ///
 /// # Errors
-/// [`Error::Noise`] if a column is no series of readings: too few, or hardly any two of them evenly spaced;
+/// [`Error::Noise`] if a column is not a series of readings: too few, or hardly any two of them evenly spaced;
 /// [`Error::Stopped`].
 pub fn analyse_noise(series: &Series, estimators: &[Estimator], progress: OnProgress) -> Result<NoiseAnalysis, Error> {
     let columns = series.columns.par_iter();

@@ -11,7 +11,7 @@ use crate::error::Error;
 use crate::experiment::Session;
 use crate::record::{MemoryBudget, SampleCache};
 
-/// A mounting's number, and its plateaus or why there are none.
+/// A mounting's number, and its plateaus or why they are missing.
 type Numbered = (usize, Result<OfRecord, Error>);
 
 /// Hands out the mountings of a session in their order, to as many lanes as their samples fit into memory.
@@ -46,7 +46,7 @@ impl<'a> Scheduler<'a> {
         done.into_iter().map(|(_, reduced)| reduced).collect()
     }
 
-    /// Reduces one mounting after the other, with the same memory, until there are none.
+    /// Reduces one mounting after the other, with the same memory, to the last.
     fn lane(&self) -> Vec<Numbered> {
         let mut cache = SampleCache::new(&self.budget);
         std::iter::from_fn(|| self.reduce_next(&mut cache)).collect()

@@ -38,7 +38,7 @@ struct Entry {
     method: Method,
     /// Key of its row.
     key: String,
-    /// Whether there is no result: it is tried again then.
+    /// Whether it has no result, and is tried again.
     failed: bool,
     files: Vec<Known>,
 }

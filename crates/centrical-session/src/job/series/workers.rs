@@ -52,7 +52,7 @@ impl Workers<'_> {
         })
     }
 
-    /// One thread: session after session, until there are none.
+    /// One thread: session after session, to the last.
     fn work(&self, sessions: &[&Path], next: &AtomicUsize, stop: &AtomicBool, send: &SyncSender<(usize, Done)>) {
         let pool = ThreadPoolBuilder::new().num_threads(1).build();
         let progress =

@@ -31,7 +31,7 @@ pub struct Watch<'s> {
     quiet: Duration,
     /// Whether the rests in attitudes of their own have come.
     has_rests: bool,
-    /// Mountings of which every plateau has come.
+    /// Mountings whose plateaus have all come.
     finished: Vec<ReducedMounting>,
     /// Measured speeds of the plateaus that have come, by set point.
     speeds: BTreeMap<usize, MeasuredSpeed>,
@@ -39,7 +39,7 @@ pub struct Watch<'s> {
     come: usize,
     /// What the record of that mounting looked like the last time.
     seen: Option<Look>,
-    /// The record of that mounting, or of the one before while there is none.
+    /// The record of that mounting, or of the one before until it comes.
     growth: Option<Growth>,
     note: Option<String>,
 }

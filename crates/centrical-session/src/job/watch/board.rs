@@ -35,7 +35,7 @@ pub struct Board<'a> {
     report: LiveReport,
     /// The first look of this run and the number of plateaus then; the last look that brought one.
     pace: Option<(Instant, usize, Instant)>,
-    /// Mounting of which the rivals were tested last.
+    /// Mounting whose rivals were tested last.
     tested: Option<usize>,
 }
 

@@ -7,7 +7,7 @@ use centrical::Observation;
 use crate::document::WatchedPlateau;
 use crate::experiment::{PlateauName, Session};
 
-/// The set points of these plateaus that nobody was told of yet.
+/// Set points of those plateaus that are not yet reported.
 #[derive(Debug, Default)]
 pub(super) struct Changed(Vec<usize>);
 

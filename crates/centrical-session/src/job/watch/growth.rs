@@ -100,7 +100,7 @@ impl Growth {
     }
 }
 
-/// The mean of the numbers; not a number where there is none.
+/// The mean of the finite values; NaN without any.
 fn mean(values: &[f64]) -> f64 {
     let numbers = values.iter().filter(|value| value.is_finite());
     let (count, sum) = numbers.fold((0.0, 0.0), |(count, sum), value| (count + 1.0, sum + value));

@@ -51,9 +51,9 @@ pub(super) enum Kind {
 /// Where the values of a channel are in a chunk of raw data.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Layout {
-    /// So many values; nothing where they are no numbers, with the bytes that they take.
+    /// A count of values and their bytes; `None` where they are not numbers.
     Plain { kind: Option<Kind>, count: u64, bytes: u64 },
-    /// In a buffer of the recorder's driver, whose rows have widths; so many rows.
+    /// In a buffer of the recorder's driver, whose rows have widths; a count of rows.
     Daqmx { kind: Option<Kind>, buffer: usize, offset: u64, count: u64, widths: Vec<u64>, scale: u32 },
 }
 

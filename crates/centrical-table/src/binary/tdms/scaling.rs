@@ -13,8 +13,8 @@ const MOST: f64 = 32.0;
 pub(super) struct Scaling(Vec<Vec<f64>>);
 
 impl Scaling {
-    /// The scaling that properties state, if any; `daqmx` is the scale that the driver's raw data stand for. What is no linear or
-    /// polynomial scale is an error: its name.
+    /// The scaling that properties state, if any; `daqmx` is the scale that the driver's raw data stand for. A scale neither
+    /// linear nor polynomial is an error: its name.
     pub fn of(properties: &Properties, daqmx: Option<u32>) -> Result<Option<Self>, String> {
         let number = |name: &str| match properties.get(name) {
             Some(Value::Number(number)) => Some(*number),

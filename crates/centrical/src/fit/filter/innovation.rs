@@ -8,7 +8,7 @@
 //!
 //! distributed as chi^2. Summed over the plateaus these are the chi^2 and the degrees of freedom of the batch. Ranks
 //! are those of [`crate::Observability`]: the same tolerance, the columns scaled by their lengths in all readings so far. Not in
-//! `R` itself: a column of which the retired states took all there was is rounding, and has to stay small.
+//! `R` itself: a column that the retired states took up entirely is rounding, and has to stay small.
 
 use nalgebra::{DMatrix, DVector, SVD};
 use statrs::distribution::{ChiSquared, ContinuousCDF};

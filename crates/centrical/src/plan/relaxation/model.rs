@@ -14,7 +14,7 @@ const NEAREST: usize = 60;
 /// An inner problem is solved when no exchange gains this part of the distance to the bound any more.
 const INNER: f64 = 0.03;
 
-/// Fewer visits than this are none.
+/// Fewer visits than this count as zero.
 const NOTHING: f64 = 1e-9;
 
 /// A quadratic model of the smooth criterion in the atoms that matter.

@@ -40,7 +40,7 @@ impl Plan {
         self.criterion / self.continuous.value.exp() - 1.0
     }
 
-    /// The plan of a schedule of which `bound` is a bound of all others (logarithms).
+    /// The plan of a schedule; `bound` is a bound of all others (logarithms).
     pub(super) fn new(
         problem: &Problem,
         best: &IntegerSchedule,

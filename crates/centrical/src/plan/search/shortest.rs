@@ -1,6 +1,6 @@
 //! The shortest schedule that meets every goal, from both sides: a schedule that meets them and is made shorter, and a time in
-//! which no schedule does. A search for a time that ends without a schedule that meets the goals proves that there is none in
-//! that time, nor in less: every branch of it has a bound above them.
+//! which no schedule does. A search for a time that ends without a schedule that meets the goals proves that none exists for
+//! that time, nor for less: every branch of it has a bound above them.
 
 use super::incumbent::Plan;
 use super::problem::{Effort, Problem};

@@ -15,7 +15,7 @@ pub(super) fn mean(plateau: &PlateauFit, noise: &NoiseModel, step: &TimeStep, ow
     let [cosine, sine] = plateau.once_per_revolution;
     let amplitude = cosine.zip_map(&sine, f64::hypot);
     let rounding = plateau.digit.zip_zip_map(&noise.quietest(), &amplitude, bias_variance);
-    // What the time constant of the settling is off by is common to the mounting: it is no drift of each of its plateaus.
+    // The error of the settling's time constant is common to the mounting: it is not a drift of each of its plateaus.
     let (weights, drift) = plateau.cells.slope(plateau.settling_rate().as_deref());
     let drift = if plateau.turns() { Vector3::zeros() } else { drift };
     let (correction, of_correction) = step.effect(plateau);

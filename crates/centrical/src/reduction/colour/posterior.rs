@@ -11,7 +11,7 @@
 //! `p(r, tau) ~ prod s_j^(-n_j/2) Q^(-n/2) / r`, `Q = sum_j n_j y_j^2 / s_j`, `E[d | r, tau] = Q / (n - 2)`.
 //!
 //! A test of residuals against the noise asks for more than a mean: for all noise that the contrasts do not exclude. Those are the `r` and
-//! `tau` whose likelihood is no less than `beta` of the largest. Twice the logarithm of that ratio is chi^2 of two degrees of freedom
+//! `tau` whose likelihood is at least `beta` of the largest. Twice the logarithm of that ratio is chi^2 of two degrees of freedom
 //! (Wilks 1938), so the region holds the true ones but for a chance of `beta`.
 
 /// Ratios of the densities: per decade, and from where on. Below the first the process adds less than a thousandth to the variance of

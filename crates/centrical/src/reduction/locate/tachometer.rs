@@ -146,11 +146,11 @@ struct Fitted {
 }
 
 impl Fitted {
-    /// Fits `values`; a residual below `step` is no spike. The column `further` is fitted to what the others leave.
+    /// Fits `values`; a residual below `step` is not a spike. The column `further` is fitted to what the others leave.
     fn of(columns: &[Vec<f64>], further: &[f64], values: &[f64], step: f64) -> Option<Self> {
         let mut kept: Vec<usize> = (0..values.len()).collect();
-        // Spikes hide one another in a fit: a few rounds find them all. What a last round leaves is no spike but a misfit, which
-        // the scatter of groups shows.
+        // Spikes hide one another in a fit: a few rounds find them all. What a last round leaves is not a spike but a misfit,
+        // which the scatter of groups shows.
         for round in 1..=ROUNDS {
             let (coefficients, gain) = solve(columns, values, &kept)?;
             let residual =

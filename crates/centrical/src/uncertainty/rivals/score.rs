@@ -63,7 +63,7 @@ impl Rivals<'_> {
     }
 
     /// Whether the residuals tell the rival `best`, the best of `tested`, from another: it explains what the other does not, and
-    /// more than the best of so many would by chance.
+    /// more than the best of `tested` would by chance.
     fn is_told_from(&self, best: Rival, other: Rival, tested: usize) -> bool {
         let (Some(best), Some(other)) = (self.get(best), self.get(other)) else { return true };
         let (redundancy, along) = best.columns.beside(&other.columns, &other.seen.inverse());
