@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 pub use centrical_table::Place;
 pub(crate) use centrical_table::{quoted, shown_path};
 
+use centrical::reduction::ReductionError;
 use centrical::stability::NoiseError;
 use centrical::{FitError, Stopped};
 use centrical_table::Error as TableError;
@@ -37,7 +38,7 @@ pub enum Error {
         /// What the record fits instead.
         instead: Option<Instead>,
         /// What was looked for and what was seen.
-        source: Box<centrical::reduction::ReductionError>,
+        source: Box<ReductionError>,
     },
     /// The plateau means of a session cannot be fitted.
     #[error("{}: {source}", shown_path(file))]
@@ -248,6 +249,11 @@ impl Error {
     /// The content of `file` at `place` is not what was expected.
     pub fn content(file: &Path, place: Place, found: impl Into<String>, expected: impl Into<String>) -> Self {
         TableError::content(file, place, found, expected).into()
+    }
+
+    /// The record in `file` does not hold what the schedule of a mounting, given by its index, says.
+    pub(crate) fn reduction(file: &Path, mounting: usize, source: ReductionError) -> Self {
+        Self::Reduction { file: file.to_owned(), mounting: mounting + 1, instead: None, source: Box::new(source) }
     }
 
     /// The plateau means of `file` cannot be fitted, or the caller stopped the fit.

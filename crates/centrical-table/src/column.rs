@@ -2,8 +2,8 @@
 
 use std::fmt;
 
-/// Numbers above this have no place in a record: their squares, summed, would leave `f64`.
-pub(crate) const LARGEST: f64 = 1e100;
+/// Numbers above this have no place in a record or a calibration: their squares, summed, would leave `f64`.
+pub const LARGEST_NUMBER: f64 = 1e100;
 
 /// How a column is found in a file.
 #[derive(Debug, Clone, PartialEq, Eq)]

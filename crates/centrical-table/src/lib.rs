@@ -56,7 +56,7 @@ mod write;
 pub use bytes::Bytes;
 
 pub use binary::{Cell, Kind, TypedColumn, TypedReader};
-pub use column::{ColumnName, Field, Rule, TableLines, UnitsFound, is_missing};
+pub use column::{ColumnName, Field, LARGEST_NUMBER, Rule, TableLines, UnitsFound, is_missing};
 pub use error::{Error, Place, quoted, shown_path};
 pub use foreign::{cut, harmless, harmless_line};
 pub use reader::{Extent, TableReader, estimate_rows, text_form};
@@ -66,5 +66,5 @@ pub use stamp::{StampKind, Stamps};
 pub use text::{DecimalSign, Index, Reread, StampColumn, TextEncoding, TextForm, unit_of_word};
 pub use write::{
     ClaimedFolder, Decimals, Outputs, TableFormat, TableWriter, TypedWriter, abandon_files, claim_folder,
-    create_folder, parquet_bytes, refuse_inputs, write_stream, write_table, write_whole,
+    create_folder, csv_field, parquet_bytes, refuse_inputs, write_stream, write_table, write_whole,
 };

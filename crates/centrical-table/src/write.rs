@@ -18,6 +18,7 @@ use std::path::{Path, PathBuf};
 use self::beside::Beside;
 pub use self::beside::abandon_files;
 use self::csv::CsvTable;
+pub use self::csv::csv_field;
 pub use self::file::{write_stream, write_whole};
 pub use self::folder::{ClaimedFolder, claim_folder, create_folder};
 use self::lines::TextTable;

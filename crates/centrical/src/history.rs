@@ -28,7 +28,7 @@ pub use batches::{BatchTest, batch_test};
 pub use between::{Between, Likely};
 pub use capability::{Capability, Index, capability};
 pub use chart::{Control, Cusum, Ewma, Rule, cusum, ewma, moving_ranges, signals};
-pub use evolution::{Estimated, Evolution};
+pub use evolution::{DAYS_IN_YEAR, Estimated, Evolution};
 pub use law::Law;
 pub use line::Curve;
 pub use outlying::{FEWEST_UNITS, UnitDistance, UnitSessions, distances};

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use centrical_report::assessment_text;
-use centrical_session::{AssessmentRequest, Error, STANDARD_GRAVITY, Session, assess};
+use centrical_session::{AssessmentRequest, Error, PredictionReport, STANDARD_GRAVITY, Session, assess};
 
 use crate::given::above_zero;
 use crate::outcome::Outcome;
@@ -17,7 +17,7 @@ pub struct Arguments {
     /// The session folder, or its experiment.toml
     session: PathBuf,
     /// Coverage probability of the expanded uncertainties, by default that of all documents (k = 2 for a normal distribution)
-    #[arg(long, default_value_t = 0.9545, value_parser = probability)]
+    #[arg(long, default_value_t = PredictionReport::COVERAGE, value_parser = probability)]
     coverage: f64,
     /// Fit without outlying plateaus, at this family-wise error, and show the difference
     #[arg(long, value_name = "ERROR", num_args = 0..=1, default_missing_value = "0.05", value_parser = probability)]

@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use centrical_report::{frontier_plot, plan_text};
 use centrical_session::{
-    Error, NotThatQuantity, PlanRequest, Quantity, USUAL_LEVELS, USUAL_TIMES, available_time, plan, unwatched,
-    write_whole,
+    Error, NotThatQuantity, PlanRequest, PredictionReport, Quantity, USUAL_LEVELS, USUAL_TIMES, available_time, plan,
+    unwatched, write_whole,
 };
 
 use super::assess::probability;
@@ -38,7 +38,7 @@ pub struct Arguments {
     #[arg(long)]
     certify: bool,
     /// Coverage probability of the expanded uncertainties
-    #[arg(long, default_value_t = 0.9545, value_parser = probability)]
+    #[arg(long, default_value_t = PredictionReport::COVERAGE, value_parser = probability)]
     coverage: f64,
     #[command(flatten)]
     printing: Printing,

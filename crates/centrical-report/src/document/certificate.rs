@@ -8,7 +8,7 @@ use centrical_session::{
 use super::axes::axes;
 use super::conformity::{conformity_table, rule};
 use super::content::{Align, Block, Document, Margins, Opening, Picture, Row, Section, Table};
-use super::drift::{drift_facts, steadiness_note};
+use super::drift::drift;
 use super::objection::objection;
 use super::reading_error::{error_note, error_table};
 use super::rests_on::{self, counts_as_exact, rests_on_sentence};
@@ -50,7 +50,8 @@ pub fn certificate(
         dates(laboratory, language),
         method(result, laboratory, language),
         conditions(result, laboratory, language),
-        drift(result, language),
+        // What was observed during the calibration; also 7.8.2.1 n, samples that were left out.
+        drift(result, Block::Paragraph, 13, language),
         traceability(laboratory, language),
         results(result, language),
         axes(result, language),
@@ -195,17 +196,6 @@ fn conditions(result: &CalibrationResult, laboratory: &Laboratory, language: Lan
         (messages.speed_uncertainty, speed_uncertainty),
     ]);
     vec![Block::heading(messages.conditions, 5), facts]
-}
-
-/// What was observed during the calibration, where records show it; also 7.8.2.1 n, samples that were left out.
-fn drift(result: &CalibrationResult, language: Language) -> Vec<Block> {
-    let messages = language.messages();
-    let facts = drift_facts(result, language);
-    if facts.is_empty() {
-        return Vec::new();
-    }
-    let note = Block::Paragraph(steadiness_note(result, messages));
-    vec![Block::heading(messages.steadiness, 13), note, Block::facts(facts)]
 }
 
 /// 7.8.4.1 c.

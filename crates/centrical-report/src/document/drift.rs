@@ -1,10 +1,11 @@
-//! What the documents say of drift and tilt, a name and a text each.
+//! What the documents say of drift and tilt.
 
 use centrical_session::{
     CalibrationResult, DriftSummary, LeftOutSummary, MICRO_G, PlateauDriftVerdict, SessionDriftVerdict, TiltSummary,
     TiltVerdict,
 };
 
+use super::content::Block;
 use crate::evaluation::{interpolated, newtonometer, not_used};
 use crate::language::{Language, Messages};
 use crate::number::MINUTE;
@@ -12,8 +13,24 @@ use crate::number::MINUTE;
 /// A name and what it stands for.
 type Fact = (&'static str, String);
 
-/// What is said of drift, tilt and samples left out; nothing for a session that came already averaged.
-pub(super) fn drift_facts(result: &CalibrationResult, language: Language) -> Vec<Fact> {
+/// Drift, tilt and samples left out under their heading, with a `note` of what they are; nothing for a session that came already averaged.
+/// `lines` is the room that the heading needs.
+pub(super) fn drift(
+    result: &CalibrationResult,
+    note: fn(String) -> Block,
+    lines: u8,
+    language: Language,
+) -> Vec<Block> {
+    let messages = language.messages();
+    let facts = drift_facts(result, language);
+    if facts.is_empty() {
+        return Vec::new();
+    }
+    vec![Block::heading(messages.steadiness, lines), note(steadiness_note(result, messages)), Block::facts(facts)]
+}
+
+/// A name and a text each.
+fn drift_facts(result: &CalibrationResult, language: Language) -> Vec<Fact> {
     let mut facts = Vec::new();
     if let Some(drift) = &result.drift {
         drifts(&mut facts, drift, language);
@@ -28,7 +45,7 @@ pub(super) fn drift_facts(result: &CalibrationResult, language: Language) -> Vec
 }
 
 /// What the facts are.
-pub(super) fn steadiness_note(result: &CalibrationResult, messages: &Messages) -> String {
+fn steadiness_note(result: &CalibrationResult, messages: &Messages) -> String {
     let tilt = result.tilt.as_ref().map(|_| messages.tilt_note);
     [messages.steadiness_note].into_iter().chain(tilt).collect::<Vec<_>>().join(" ")
 }

@@ -5,7 +5,7 @@ use centrical_session::{CalibrationResult, UnitHistoryReport, ValiditySummary};
 use super::axes::axes;
 use super::conformity::{judged_in_words, rule};
 use super::content::{Align, Block, Document, Margins, Opening, Section, Table, TableKind, Tone};
-use super::drift::{drift_facts, steadiness_note};
+use super::drift::drift;
 use super::objection::{objection, pattern, rival};
 use super::reading_error::{error_note, error_table, headline_table};
 use super::rests_on::{all_rests_on, rests_on};
@@ -42,7 +42,7 @@ pub fn report(
     let opened = [
         conduct(result, language),
         checks(result, language),
-        drift(result, language),
+        drift(result, Block::Note, 4, language),
         reading_errors(result, language),
         geometry_parameters(result, language),
         uncertainty_budget(result, language),
@@ -257,17 +257,6 @@ fn speeds(result: &CalibrationResult, language: Language) -> String {
     let measured = speeds.measured_by.as_ref().map(|_| (words.speeds_measured)(speeds));
     let found = speeds.findings.iter().map(words.speed_finding);
     measured.into_iter().chain(found).collect::<Vec<_>>().join("; ")
-}
-
-/// Drift and tilt, where the records show them.
-fn drift(result: &CalibrationResult, language: Language) -> Vec<Block> {
-    let messages = language.messages();
-    let facts = drift_facts(result, language);
-    if facts.is_empty() {
-        return Vec::new();
-    }
-    let note = Block::Note(steadiness_note(result, messages));
-    vec![Block::heading(messages.steadiness, 4), note, Block::facts(facts)]
 }
 
 /// The coefficients of the error model.

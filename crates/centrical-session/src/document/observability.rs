@@ -13,12 +13,10 @@ use crate::document::prediction::PredictionReport;
 use crate::document::result::{PriorSummary, Program};
 use crate::error::{Error, Place};
 use crate::experiment::Plan;
+use crate::units::MICRO_G;
 
 /// Name of the schema's present version.
 pub const OBSERVABILITY_SCHEMA: &str = "centrical-observability/1";
-
-/// Probability that predicted expanded uncertainties are to cover: that of all documents.
-const COVERAGE: f64 = 0.9545;
 
 /// A design with its weights: a plan, or a session with those of its data.
 #[derive(Debug, Clone, PartialEq)]
@@ -46,7 +44,7 @@ impl Subject {
         let experiment = self.model.experiment();
         let load = |s: &SetPoint| linear::nominal(experiment, s).norm();
         let force = experiment.set_points.iter().map(load).fold(0.0, f64::max);
-        PredictionReport::of(&prediction, ReadingRange { force }, COVERAGE)
+        PredictionReport::of(&prediction, ReadingRange { force }, PredictionReport::COVERAGE)
             .map_err(|source| Error::fit(&self.file, source))
     }
 
@@ -61,7 +59,7 @@ impl Subject {
 
 impl From<Plan> for Subject {
     fn from(plan: Plan) -> Self {
-        let density = plan.noise.density / (1e-6 * centrical::STANDARD_GRAVITY);
+        let density = plan.noise.density / MICRO_G;
         Self {
             file: plan.file,
             title: plan.title,

@@ -54,6 +54,9 @@ pub struct PredictedParameter {
 }
 
 impl PredictionReport {
+    /// The usual probability: that of all documents.
+    pub const COVERAGE: f64 = 0.9545;
+
     /// The report of a prediction.
     ///
     /// # Errors

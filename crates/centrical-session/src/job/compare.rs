@@ -103,7 +103,7 @@ fn differences(pair: &[&Calibrated; 2], names: &[String]) -> Comparison {
 /// Years between the dates of two sessions, if both are days.
 fn years_between(first: &CalibrationResult, second: &CalibrationResult) -> Option<f64> {
     let [first, second] = [first, second].map(|result| result.session.date.parse::<Date>().ok());
-    Some(f64::from(second?.days_since(first?)?) / 365.25)
+    second?.years_since(first?)
 }
 
 /// Names of the coefficients of terms that `of` has and `other` has not.

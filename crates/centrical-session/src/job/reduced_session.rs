@@ -7,7 +7,7 @@ use centrical_table::{TableFormat, claim_folder, refuse_inputs, write_whole};
 use toml_edit::{DocumentMut, InlineTable, Item, TableLike, Value, value};
 
 use super::calibrate::calibrate_reduced;
-use crate::document::{Method, RecordFindings};
+use crate::document::{CalibrationResult, Method, RecordFindings};
 use crate::error::{Error, Place};
 use crate::experiment::{
     EXPERIMENT_FILE, PlateauMean, RestTable, Session, SpeedSource, write_attitudes, write_plateaus,
@@ -23,11 +23,18 @@ const REPLACED: [&str; 4] = ["record", "telemetry", "pulses", "plateaus"];
 const RESTS: [&str; 2] = ["rests.csv", "attitudes.csv"];
 
 /// Writes the reduced session into `folder`: the table of plateaus first, and `experiment.toml`, which names it, last.
-/// Calibrating it gives the numbers that calibrating the records gives.
+/// Calibrating it gives the numbers that calibrating the records gives. `result` is that of the exact method, where it is at hand: without it the
+/// session is calibrated for what the records show beside their means.
 ///
 /// # Errors
 /// [`Error`] if the folder is the session's own, or does not take the files.
-pub fn write_reduced(session: &Session, reduced: &Reduced, format: TableFormat, folder: &Path) -> Result<(), Error> {
+pub fn write_reduced(
+    session: &Session,
+    reduced: &Reduced,
+    result: Option<&CalibrationResult>,
+    format: TableFormat,
+    folder: &Path,
+) -> Result<(), Error> {
     let _claim = claim_folder(folder)?;
     let experiment_file = folder.join(EXPERIMENT_FILE);
     if is_same(&session.file, &experiment_file) {
@@ -50,7 +57,7 @@ pub fn write_reduced(session: &Session, reduced: &Reduced, format: TableFormat, 
     let name = (!session.mountings.is_empty()).then_some(name);
     let mut document = editable(&session.file, &session.experiment_text()?)?;
     rewrite(&mut document, session, name, of_plateaus.then_some(session.speeds.set_uncertainty));
-    if let Some(findings) = session.plateaus.is_none().then(|| findings(session, reduced)).flatten() {
+    if let Some(findings) = session.plateaus.is_none().then(|| findings(session, reduced, result)).flatten() {
         document.insert("record_findings", value(findings.to_json()?));
     }
     if let Some(noise) = reduced.reading_noise().filter(|_| session.type_b.resolution > 0.0)
@@ -72,9 +79,11 @@ pub fn write_reduced(session: &Session, reduced: &Reduced, format: TableFormat, 
 
 /// What calibrating finds in the records beside the means: drifts over plateaus, and speeds that contradict the schedule. None of a session that
 /// cannot be calibrated.
-fn findings(session: &Session, reduced: &Reduced) -> Option<RecordFindings> {
-    let result = calibrate_reduced(session, reduced, Method::Exact, &unwatched).ok()?;
-    RecordFindings::of(&result)
+fn findings(session: &Session, reduced: &Reduced, result: Option<&CalibrationResult>) -> Option<RecordFindings> {
+    match result {
+        Some(result) => RecordFindings::of(result),
+        None => RecordFindings::of(&calibrate_reduced(session, reduced, Method::Exact, &unwatched).ok()?),
+    }
 }
 
 /// The experiment file with the table, if there is one, instead of records, and all else, comments too, as it was. With `uncertainty` it says

@@ -4,6 +4,7 @@ use std::borrow::Cow;
 use std::fmt;
 use std::str::FromStr;
 
+use centrical::history::DAYS_IN_YEAR;
 use jiff::civil;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::{self, Deserializer};
@@ -53,6 +54,11 @@ impl Date {
     /// Days from an earlier day to this one; none where one of them is not in the calendar.
     pub(crate) fn days_since(self, earlier: Self) -> Option<i32> {
         Some((self.civil()? - earlier.civil()?).get_days())
+    }
+
+    /// The same in years.
+    pub(crate) fn years_since(self, earlier: Self) -> Option<f64> {
+        Some(f64::from(self.days_since(earlier)?) / DAYS_IN_YEAR)
     }
 }
 

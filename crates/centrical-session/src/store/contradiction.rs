@@ -4,15 +4,13 @@ use std::collections::HashSet;
 
 use centrical::{ErrorModel, Group, Term};
 use centrical_compensate::Monomial;
+use centrical_table::LARGEST_NUMBER;
 
 use super::row::{Row, RowTerm, Status};
 use super::schema::Depth;
 
 /// Column, what was found there, and what was expected.
 type Contradiction = (&'static str, String, String);
-
-/// Numbers above this have no place in a calibration.
-const LARGEST: f64 = 1e100;
 
 /// Relative difference of a variance from the square of a standard uncertainty that may be computed in another way: rounding makes some 1e-9 of it.
 const ROUNDING: f64 = 1e-6;
@@ -52,10 +50,10 @@ fn of_numbers(row: &Row) -> Option<Contradiction> {
     for ((value, uncertainty), name) in both {
         let wrong =
             |column, number: f64, expected: &str| Some((column, format!("{number:e} of {name}"), expected.to_owned()));
-        if value.abs() > LARGEST {
+        if value.abs() > LARGEST_NUMBER {
             return wrong("values", *value, "a value of a calibration");
         }
-        if *uncertainty < 0.0 || *uncertainty > LARGEST {
+        if *uncertainty < 0.0 || *uncertainty > LARGEST_NUMBER {
             return wrong("standard_uncertainties", *uncertainty, "zero or more");
         }
         if value.is_nan() != uncertainty.is_nan() {

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
 
-use crate::column::{Field, LARGEST, Rule};
+use crate::column::{Field, LARGEST_NUMBER, Rule};
 use crate::error::{Error, Place};
 use crate::rows::{ASCENDING, Before, Rows, runs_backwards};
 use crate::stamp::{Stamps, TickForm};
@@ -143,7 +143,7 @@ fn check(file: &Path, fields: &[Field], rows: &Rows, before: &mut Before) -> Res
         }
         let missing_is_fine = field.rule == Rule::OrMissing;
         for (i, value) in values.iter().enumerate() {
-            if value.is_nan() && !missing_is_fine || value.abs() > LARGEST {
+            if value.is_nan() && !missing_is_fine || value.abs() > LARGEST_NUMBER {
                 let missing = value.to_bits() == MISSING.to_bits();
                 return wrong(i, if missing { "no value".to_owned() } else { value.to_string() }, &field.expected);
             }
@@ -158,7 +158,7 @@ fn check(file: &Path, fields: &[Field], rows: &Rows, before: &mut Before) -> Res
 
 /// Whether all values are numbers in order; `last` is the one before them.
 fn is_plain(values: &[f64], last: f64, rule: Rule) -> bool {
-    let wrong = values.iter().map(|value| usize::from(value.is_nan() || value.abs() > LARGEST)).sum::<usize>();
+    let wrong = values.iter().map(|value| usize::from(value.is_nan() || value.abs() > LARGEST_NUMBER)).sum::<usize>();
     let ascends = || values.first().is_none_or(|first| *first >= last) && !runs_backwards(values);
     wrong == 0 && (!rule.ascends() || ascends())
 }

@@ -7,7 +7,7 @@ use memchr::{memchr2, memchr3};
 use super::batch::{Batch, ROWS};
 use super::fields::{Delimiter, Fault, number, unquoted};
 use super::number::plain;
-use crate::column::{ColumnName, Field, LARGEST, Rule, is_missing};
+use crate::column::{ColumnName, Field, LARGEST_NUMBER, Rule, is_missing};
 use crate::error::quoted;
 use crate::rows::Rows;
 use crate::stamp;
@@ -215,5 +215,5 @@ fn any_number(text: &[u8]) -> Option<(f64, usize)> {
 /// A number that can stand in a record: finite, and of a size that can be squared.
 #[inline]
 fn plausible(number: f64) -> Option<f64> {
-    (number.abs() <= LARGEST).then_some(number)
+    (number.abs() <= LARGEST_NUMBER).then_some(number)
 }

@@ -33,11 +33,11 @@ impl<'a> CsvTable<'a> {
 
 /// The first line of a table with these columns.
 pub(super) fn header(names: &[&str]) -> String {
-    names.iter().map(|name| field(name)).collect::<Vec<_>>().join(",") + "\n"
+    names.iter().map(|name| csv_field(name)).collect::<Vec<_>>().join(",") + "\n"
 }
 
-/// A text as a field, quoted where it must be.
-pub(super) fn field(name: &str) -> String {
+/// A text as a field of CSV, quoted where it must be (RFC 4180).
+pub fn csv_field(name: &str) -> String {
     if name.contains([',', '"', '\n', '\r']) { format!("\"{}\"", name.replace('"', "\"\"")) } else { name.to_owned() }
 }
 
@@ -85,7 +85,7 @@ mod tests {
 
     #[test]
     fn names_are_quoted_where_they_must_be() {
-        assert_eq!(field("f1"), "f1");
-        assert_eq!(field("f1, \"raw\""), "\"f1, \"\"raw\"\"\"");
+        assert_eq!(csv_field("f1"), "f1");
+        assert_eq!(csv_field("f1, \"raw\""), "\"f1, \"\"raw\"\"\"");
     }
 }

@@ -5,7 +5,7 @@ use std::io::{self, Write};
 use memchr::memchr;
 use rayon::prelude::*;
 
-use super::csv::{field, header};
+use super::csv::{csv_field, header};
 use super::output::{Output, Sink, SteadyFile};
 use super::text_lines::{Decimals, ROWS, write_lines};
 use crate::stamp::Stamps;
@@ -70,7 +70,7 @@ impl TextTable {
             for (row, line) in numbers.text[numbers.start..].split_inclusive(|byte| *byte == b'\n').enumerate() {
                 let after = memchr(b',', line).unwrap_or(line.len() - 1);
                 match stamps.text(from + row) {
-                    Some(stamp) => text.extend_from_slice(field(&String::from_utf8_lossy(&stamp)).as_bytes()),
+                    Some(stamp) => text.extend_from_slice(csv_field(&String::from_utf8_lossy(&stamp)).as_bytes()),
                     None => text.extend_from_slice(&line[..after]),
                 }
                 text.extend_from_slice(&line[after..]);

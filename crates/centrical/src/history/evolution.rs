@@ -182,5 +182,8 @@ impl Evolution<'_> {
 /// Steps in which a due date is looked for, before it is bisected to a day.
 const STEPS_AHEAD: u32 = 64;
 
+/// Days in a year.
+pub const DAYS_IN_YEAR: f64 = 365.25;
+
 /// [years]
-const A_DAY: f64 = 1.0 / 365.25;
+const A_DAY: f64 = 1.0 / DAYS_IN_YEAR;

@@ -51,7 +51,7 @@ pub fn analyse(
     advance(progress, ())?;
     let mut grid = regular_grid(t, y, progress)?;
     let spikes = leave_out_spikes(&mut grid.readings, progress)?;
-    let phase = Phase::integrate_watched(&grid.readings, grid.interval, progress)?;
+    let phase = Phase::integrate(&grid.readings, grid.interval, progress)?;
     let seen = || grid.readings.iter().filter(|y| y.is_finite());
     let samples = seen().count();
     let families = estimators.iter().map(|e| Ok((*e, family(&phase, *e, progress)?)));

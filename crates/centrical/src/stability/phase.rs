@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::error::NoiseError;
-use crate::progress::{OnProgress, advance, unwatched};
+use crate::progress::{OnProgress, advance};
 use crate::statistics::PIECE;
 
 /// Phase x_0 .. x_N: the running integral of the readings, less their mean.
@@ -53,19 +53,11 @@ impl Phase {
     /// inside is bridged by a straight line between the means of the readings within L on either side: for white
     /// noise such a bridge adds less variance than the readings it stands for (a line between the two neighbours
     /// alone would add more). [`Phase::gaps`] counts the bridged readings; the estimators built on differences omit
-    /// every term with more than a tenth of them.
+    /// every term with more than a tenth of them. `progress` is asked between the passes over the readings.
     ///
     /// # Errors
-    /// [`NoiseError`] if `tau0` is not positive or fewer than 2 readings are finite.
-    pub fn integrate(readings: &[f64], tau0: f64) -> Result<Self, NoiseError> {
-        Self::integrate_watched(readings, tau0, &unwatched)
-    }
-
-    /// The same, asking `progress` between the passes over the readings.
-    ///
-    /// # Errors
-    /// As [`Phase::integrate`]; [`NoiseError::Stopped`].
-    pub fn integrate_watched(readings: &[f64], tau0: f64, progress: OnProgress<()>) -> Result<Self, NoiseError> {
+    /// [`NoiseError`] if `tau0` is not positive or fewer than 2 readings are finite; [`NoiseError::Stopped`].
+    pub fn integrate(readings: &[f64], tau0: f64, progress: OnProgress<()>) -> Result<Self, NoiseError> {
         check_interval(tau0)?;
         let is_seen = |y: &f64| y.is_finite();
         let (Some(first), Some(last)) = (readings.iter().position(is_seen), readings.iter().rposition(is_seen)) else {
@@ -180,13 +172,15 @@ fn count_filled(readings: &[f64]) -> Vec<u32> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::progress::unwatched;
 
     #[test]
     fn the_integral_of_a_ramp_bridges_its_gap_exactly() {
         let ramp: Vec<f64> = (0..20).map(f64::from).collect();
         let mut gapped = ramp.clone();
         gapped[7..11].fill(f64::NAN);
-        let (whole, bridged) = (Phase::integrate(&ramp, 0.5).unwrap(), Phase::integrate(&gapped, 0.5).unwrap());
+        let (whole, bridged) =
+            (Phase::integrate(&ramp, 0.5, &unwatched).unwrap(), Phase::integrate(&gapped, 0.5, &unwatched).unwrap());
         assert_eq!(bridged.gaps(), BridgedGaps { runs: 1, missing: 4, longest: 4 });
         // The means differ, so the phases differ by a straight line that second differences do not see.
         let bend = |p: &Phase, k: usize| p.x[k] - 2.0 * p.x[k - 1] + p.x[k - 2];
@@ -196,8 +190,8 @@ mod tests {
 
     #[test]
     fn what_cannot_be_analysed_is_refused() {
-        assert!(Phase::integrate(&[f64::NAN; 5], 1.0).is_err());
-        assert!(Phase::integrate(&[1.0, 2.0, 3.0], 0.0).is_err());
+        assert!(Phase::integrate(&[f64::NAN; 5], 1.0, &unwatched).is_err());
+        assert!(Phase::integrate(&[1.0, 2.0, 3.0], 0.0, &unwatched).is_err());
         assert!(Phase::new(vec![0.0, f64::INFINITY, 1.0], 1.0).is_err());
     }
 }

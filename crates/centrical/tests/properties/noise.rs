@@ -47,7 +47,7 @@ fn tally(recipe: &Recipe) -> ([Tally; 5], usize) {
 }
 
 fn phase(recipe: &Recipe, n: usize, seed: usize) -> Phase {
-    Phase::integrate(&recipe.readings(n, TAU0, seed), TAU0).unwrap()
+    Phase::integrate(&recipe.readings(n, TAU0, seed), TAU0, &unwatched).unwrap()
 }
 
 /// Most successes in `n` trials of probability `p` that come by chance once in a thousand or more often.
@@ -187,7 +187,8 @@ fn gaps_do_not_move_the_deviations() {
     (1..READINGS).step_by(29).for_each(|k| gapped[k] = f64::NAN);
     gapped[5000..5800].fill(f64::NAN);
     let missing = gapped.iter().filter(|y| y.is_nan()).count();
-    let (whole, gapped) = (Phase::integrate(&whole, TAU0).unwrap(), Phase::integrate(&gapped, TAU0).unwrap());
+    let (whole, gapped) =
+        (Phase::integrate(&whole, TAU0, &unwatched).unwrap(), Phase::integrate(&gapped, TAU0, &unwatched).unwrap());
     assert_eq!(gapped.gaps().longest, 800);
     assert_eq!(gapped.gaps().missing, missing);
     for estimator in [Estimator::OverlappingAllan, Estimator::ModifiedAllan, Estimator::OverlappingHadamard] {
@@ -238,8 +239,8 @@ fn readings_phase_and_time_stamps_agree() {
     let readings = Recipe { white: 1.0, ramp: 1.0, ..Recipe::default() }.readings(500, TAU0, 2);
     let times: Vec<f64> = (0..500).map(|k| 7.0 + TAU0 * f64::from(k)).collect();
     let grid = regular_grid(&times, &readings, &unwatched).unwrap();
-    let direct = Phase::integrate(&readings, TAU0).unwrap();
-    let stamped = Phase::integrate(&grid.readings, grid.interval).unwrap();
+    let direct = Phase::integrate(&readings, TAU0, &unwatched).unwrap();
+    let stamped = Phase::integrate(&grid.readings, grid.interval, &unwatched).unwrap();
     let given = Phase::new(direct.points().to_vec(), TAU0).unwrap();
     for estimator in Estimator::ALL {
         let value = |phase: &Phase| estimator.variance(phase, 8).unwrap().value;
@@ -250,16 +251,18 @@ fn readings_phase_and_time_stamps_agree() {
 
 #[test]
 fn what_cannot_be_analysed_is_an_error() {
-    assert!(fit_noise_terms(&Phase::integrate(&[1.0; 100], TAU0).unwrap(), &unwatched).is_err());
-    assert!(fit_noise_terms(&Phase::integrate(&[1.0, 2.0, 3.0], TAU0).unwrap(), &unwatched).is_err());
+    assert!(fit_noise_terms(&Phase::integrate(&[1.0; 100], TAU0, &unwatched).unwrap(), &unwatched).is_err());
+    assert!(fit_noise_terms(&Phase::integrate(&[1.0, 2.0, 3.0], TAU0, &unwatched).unwrap(), &unwatched).is_err());
     let every_other: Vec<f64> = (0..1000).map(|k| if k % 2 == 0 { f64::NAN } else { f64::from(k % 7) }).collect();
     assert_eq!(
-        fit_noise_terms(&Phase::integrate(&every_other, TAU0).unwrap(), &unwatched).unwrap_err().to_string(),
+        fit_noise_terms(&Phase::integrate(&every_other, TAU0, &unwatched).unwrap(), &unwatched)
+            .unwrap_err()
+            .to_string(),
         "found 499 of 999 readings missing, expected stretches of which a tenth is missing at most"
     );
     assert!(power_spectrum(&[1.0; 100], TAU0, 200, &unwatched).is_err());
     assert!(power_spectrum(&[f64::NAN; 100], TAU0, 16, &unwatched).is_err());
-    let phase = Phase::integrate(&[1.0, 2.0, 3.0], TAU0).unwrap();
+    let phase = Phase::integrate(&[1.0, 2.0, 3.0], TAU0, &unwatched).unwrap();
     assert!(deviations(&phase, Estimator::Allan, &[1], 1.0, &unwatched).is_err());
     assert!(deviations(&phase, Estimator::ModifiedTotal, &[0, 5, 99], 0.5, &unwatched).unwrap().is_empty());
 }
@@ -269,7 +272,9 @@ fn what_cannot_be_analysed_is_an_error() {
 fn what_is_no_such_noise_shows_as_misfit() {
     let hum = |k: i32| (f64::from(k) * 0.3).sin() + 1e-2 * (f64::from(k) * 1.7).cos();
     let readings: Vec<f64> = (0..5000).map(hum).collect();
-    assert!(!fit_noise_terms(&Phase::integrate(&readings, TAU0).unwrap(), &unwatched).unwrap().is_consistent());
+    assert!(
+        !fit_noise_terms(&Phase::integrate(&readings, TAU0, &unwatched).unwrap(), &unwatched).unwrap().is_consistent()
+    );
 }
 
 /// Coefficients scale as their units say.
@@ -278,7 +283,9 @@ fn coefficients_follow_the_units_of_reading_and_time() {
     let recipe = Recipe { quantisation: 2e-4, white: 1e-3, random_walk: 5e-3, ..Recipe::default() };
     let readings = recipe.readings(READINGS, TAU0, 4);
     let scaled: Vec<f64> = readings.iter().map(|y| 1e12 * y).collect();
-    let fit = |readings: &[f64], tau0| fit_noise_terms(&Phase::integrate(readings, tau0).unwrap(), &unwatched).unwrap();
+    let fit = |readings: &[f64], tau0| {
+        fit_noise_terms(&Phase::integrate(readings, tau0, &unwatched).unwrap(), &unwatched).unwrap()
+    };
     let (plain, scaled) = (fit(&readings, TAU0), fit(&scaled, 4.0 * TAU0));
     for (term, factor) in [(NoiseTerm::Quantisation, 4e12), (NoiseTerm::White, 2e12), (NoiseTerm::RandomWalk, 5e11)] {
         let (

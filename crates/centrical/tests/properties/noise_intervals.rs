@@ -21,7 +21,7 @@ fn intervals_cover_at_every_tau() {
     let recipes =
         [Recipe { white: 1.0, ..none }, Recipe { bias_instability: 1.0, ..none }, Recipe { random_walk: 1.0, ..none }];
     for recipe in recipes {
-        let phase = |seed| Phase::integrate(&recipe.readings(READINGS, TAU0, seed), TAU0).unwrap();
+        let phase = |seed| Phase::integrate(&recipe.readings(READINGS, TAU0, seed), TAU0, &unwatched).unwrap();
         let phases: Vec<Phase> = (0..COLUMNS).map(phase).collect();
         for estimator in [Estimator::Allan, Estimator::OverlappingAllan, Estimator::OverlappingHadamard] {
             let found: Vec<Vec<Deviation>> = phases
@@ -57,7 +57,7 @@ fn a_change_of_the_law_is_followed() {
     ];
     for (recipe, expected) in cases {
         for seed in 0..20 {
-            let phase = Phase::integrate(&recipe.readings(65_536, TAU0, seed), TAU0).unwrap();
+            let phase = Phase::integrate(&recipe.readings(65_536, TAU0, seed), TAU0, &unwatched).unwrap();
             let found = deviations(&phase, Estimator::OverlappingAllan, &[1, 1024], LEVEL, &unwatched).unwrap();
             assert_eq!([found[0].law, found[1].law], expected, "{recipe:?}, {seed}");
         }

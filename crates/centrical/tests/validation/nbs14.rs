@@ -20,7 +20,7 @@ fn thousand() -> Vec<f64> {
 }
 
 fn phase(readings: &[f64]) -> Phase {
-    Phase::integrate(readings, 1.0).unwrap()
+    Phase::integrate(readings, 1.0, &unwatched).unwrap()
 }
 
 fn rows(table: &str) -> impl Iterator<Item = Vec<&str>> {

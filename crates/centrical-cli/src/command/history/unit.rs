@@ -26,7 +26,7 @@ pub struct Arguments {
     #[arg(short, long, value_name = "DAY")]
     until: Option<Date>,
     /// Probability of all intervals, and that of a reading within its limit
-    #[arg(long, default_value_t = 0.95)]
+    #[arg(long, default_value_t = UnitHistoryRequest::COVERAGE)]
     confidence: f64,
     /// Take parameters as constant but for the scatter between sessions
     #[arg(long)]

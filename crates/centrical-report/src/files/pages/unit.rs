@@ -65,7 +65,8 @@ impl UnitPages {
 
     /// The page of a unit by its calibrations, in the order of time.
     pub fn made(&self, calibrations: &[Calibrated]) -> String {
-        let request = UnitHistoryRequest { trend: true, until: None, limit: self.limit, coverage: COVERAGE };
+        let request =
+            UnitHistoryRequest { trend: true, until: None, limit: self.limit, coverage: UnitHistoryRequest::COVERAGE };
         let Some(report) = unit_history(calibrations, &[], request) else {
             return no_unit_history_page(&calibrations[0].unit_model, &calibrations[0].unit_serial);
         };
@@ -85,6 +86,3 @@ impl UnitPages {
 
 /// Counts up when a page of the same calibrations looks otherwise.
 const FORM: u32 = 2;
-
-/// Probability of the intervals, as of an expanded uncertainty.
-const COVERAGE: f64 = 0.95;

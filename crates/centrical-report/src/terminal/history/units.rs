@@ -17,6 +17,19 @@ const SHOWN: usize = 5;
 /// Units of one type beside each other.
 pub fn units_history_text(report: &UnitsHistoryReport) -> Screen {
     let mut screen = Screen::default();
+    verdict(&mut screen, report);
+    untested(&mut screen, report);
+    beyond_limits(&mut screen, report);
+    calibrations(&mut screen, report);
+    batches(&mut screen, report);
+    without_unit(&mut screen, report);
+    outlying(&mut screen, report);
+    findings(&mut screen, report);
+    parameters(&mut screen, report);
+    screen
+}
+
+fn verdict(screen: &mut Screen, report: &UnitsHistoryReport) {
     let are_alike =
         report.outlying.is_empty() && report.findings.is_empty() && !report.parameters.iter().any(|p| p.batches_differ);
     let (emphasis, mark, words) = match (report.is_sound, report.is_tested) {
@@ -26,6 +39,10 @@ pub fn units_history_text(report: &UnitsHistoryReport) -> Screen {
         (false, _) => (Emphasis::NotAcceptable, "NOT WITHIN LIMITS", "the units stand below"),
     };
     screen.marked(emphasis, mark, words);
+}
+
+/// Stations with too few units to compare them.
+fn untested(screen: &mut Screen, report: &UnitsHistoryReport) {
     for UntestedStation { station, units } in &report.untested {
         let at = if station.is_empty() { String::new() } else { format!(" at the station {station}") };
         let words = format!(
@@ -35,10 +52,17 @@ pub fn units_history_text(report: &UnitsHistoryReport) -> Screen {
         );
         screen.marked(Emphasis::Warning, "FEW", &words);
     }
+}
+
+fn beyond_limits(screen: &mut Screen, report: &UnitsHistoryReport) {
     for BeyondLimit { parameter, units } in &report.beyond_limits {
         let words = format!("{parameter}: {}, serial {}", counted(units.len(), "unit"), first_of(units, SHOWN));
         screen.marked(Emphasis::NotAcceptable, "BEYOND LIMITS", &words);
     }
+}
+
+/// Calibrations that are left out, or that count with an objection.
+fn calibrations(screen: &mut Screen, report: &UnitsHistoryReport) {
     for session in report.left_out.iter().take(SHOWN) {
         let words = format!("serial {}, {}", session.session.unit_serial, left_out(session));
         screen.marked(Emphasis::Warning, "INCOMPLETE", &words);
@@ -52,8 +76,9 @@ pub fn units_history_text(report: &UnitsHistoryReport) -> Screen {
             format!("{} with an objection count as the others do", counted(report.not_acceptable, "calibration"));
         screen.marked(Emphasis::Warning, "NOT ACCEPTABLE", &words);
     }
-    batches(&mut screen, report);
-    without_unit(&mut screen, report);
+}
+
+fn outlying(screen: &mut Screen, report: &UnitsHistoryReport) {
     for unit in &report.outlying {
         let most = unit.most.iter().map(|(name, score)| format!("{name} {score:+.1}")).collect::<Vec<_>>().join(", ");
         let words = format!(
@@ -64,6 +89,10 @@ pub fn units_history_text(report: &UnitsHistoryReport) -> Screen {
         );
         screen.marked(Emphasis::NotAcceptable, "OUTLYING", &words);
     }
+}
+
+/// Units that drift or scatter more than the others.
+fn findings(screen: &mut Screen, report: &UnitsHistoryReport) {
     for finding in &report.findings {
         let words = format!(
             "serial {}, {}: family-wise probability {}",
@@ -77,6 +106,10 @@ pub fn units_history_text(report: &UnitsHistoryReport) -> Screen {
         };
         screen.marked(Emphasis::NotAcceptable, does, &words);
     }
+}
+
+/// The parameters over the units: a row each.
+fn parameters(screen: &mut Screen, report: &UnitsHistoryReport) {
     screen.gap();
     let counts = format!("{}, {}", counted(report.units, "unit"), counted(report.sessions, "calibration"));
     screen.head("UNITS", &format!("{}: {counts}; of each unit the mean over its calibrations", report.unit_model));
@@ -112,8 +145,7 @@ pub fn units_history_text(report: &UnitsHistoryReport) -> Screen {
         ]);
     }
     screen.table(table);
-    legend(&mut screen, report.parameters.iter().map(|p| (p.name.as_str(), p.group)));
-    screen
+    legend(screen, report.parameters.iter().map(|p| (p.name.as_str(), p.group)));
 }
 
 /// What the comparison of batches says where they do not differ.

@@ -393,8 +393,5 @@ pub fn single(name: &str) -> [(String, f64); 1] {
 
 /// Years from a day to another.
 pub fn years(from: Date, to: Date) -> f64 {
-    to.days_since(from).map_or(f64::NAN, f64::from) / DAYS
+    to.years_since(from).unwrap_or(f64::NAN)
 }
-
-/// Days in a year.
-pub const DAYS: f64 = 365.25;

@@ -11,9 +11,6 @@ use crate::document::{CalibrationResult, UnitHistoryReport};
 use crate::error::{Error, Place};
 use crate::store::{Depth, Selection};
 
-/// Probability of the intervals, as of an expanded uncertainty.
-const COVERAGE: f64 = 0.95;
-
 /// What the calibrations in `paths` that were made of the unit of the result in `file` up to its day, and that result, say of the unit.
 /// `paths` are results, folders of results, or stores; calibrations of other units in them are passed over.
 ///
@@ -34,7 +31,7 @@ pub fn history_up_to(file: &Path, result: &CalibrationResult, paths: &[PathBuf])
     let (this, others): (Vec<Calibrated>, Vec<Calibrated>) = all.into_iter().partition(|c| c.source == source);
     let is_earlier = |other: &Calibrated| this.first().is_some_and(|this| other.date <= this.date);
     let calibrations: Vec<Calibrated> = others.into_iter().filter(is_earlier).chain(this.iter().cloned()).collect();
-    let request = UnitHistoryRequest { trend: true, until: None, limit: None, coverage: COVERAGE };
+    let request = UnitHistoryRequest { trend: true, until: None, limit: None, coverage: UnitHistoryRequest::COVERAGE };
     unit_history(&calibrations, &[], request).ok_or_else(|| {
         let place = paths.first().map_or(file, PathBuf::as_path);
         let day = this.first().map_or_else(String::new, |this| format!(" up to {}", this.date));

@@ -1,11 +1,13 @@
 //! One unit over its calibrations.
 
-use centrical::history::{Between, Curve, Estimated, Evolution, Likely, Quantiles, Series, SessionEstimates, sameness};
+use centrical::history::{
+    Between, Curve, DAYS_IN_YEAR, Estimated, Evolution, Likely, Quantiles, Series, SessionEstimates, sameness,
+};
 use centrical::uncertainty::{Compensated, family_wise};
 use centrical_compensate::Term;
 use nalgebra::{DMatrix, Vector3};
 
-use super::calibrated::{Basis, Calibrated, DAYS, Finder, series, shared_changes, single, years};
+use super::calibrated::{Basis, Calibrated, Finder, series, shared_changes, single, years};
 use super::comparable::Compared;
 use crate::document::{
     DeviatingSession, DueDate, Program, ReadingHistory, SamenessSummary, UNIT_HISTORY_SCHEMA, UnitHistoryReport,
@@ -24,6 +26,11 @@ pub struct UnitHistoryRequest {
     pub limit: Option<f64>,
     /// Probability of all intervals, and that of a reading within its limit at the due date.
     pub coverage: f64,
+}
+
+impl UnitHistoryRequest {
+    /// The usual probability, as of an expanded uncertainty.
+    pub const COVERAGE: f64 = 0.95;
 }
 
 /// Years after the last calibration up to which a due date is looked for.
@@ -50,7 +57,7 @@ pub fn unit_history(
         return None;
     }
     let (zero, trend) = (own[0].date, request.trend && own.len() > 2);
-    let until = request.until.unwrap_or(last.date.after(DAYS));
+    let until = request.until.unwrap_or(last.date.after(DAYS_IN_YEAR));
     let job = Job {
         own: &own,
         others: &others.iter().map(|unit| unit.iter().collect()).collect::<Vec<Vec<&Calibrated>>>(),
@@ -96,7 +103,7 @@ pub fn unit_history(
             .filter(|_| are_all || due.is_some())
             .map(|_| due.as_ref().is_none_or(|due| due.date > last.date)),
         due,
-        due_after: request.limit.filter(|_| are_all).map(|_| last.date.after(HORIZON * DAYS)),
+        due_after: request.limit.filter(|_| are_all).map(|_| last.date.after(HORIZON * DAYS_IN_YEAR)),
         readings,
     })
 }
@@ -259,7 +266,7 @@ impl Job<'_> {
             let from = point.time;
             let time = evolution.due(last.value(&places), limit, self.request.coverage, from, from + HORIZON)?;
             // The day before: until then the reading is within its limit.
-            let days = ((time - from) * DAYS).floor();
+            let days = ((time - from) * DAYS_IN_YEAR).floor();
             Some(DueDate { date: last.date.after(days), axis: axis + 1, force: force.into() })
         });
         Some(ReadingHistory {

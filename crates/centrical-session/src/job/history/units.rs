@@ -12,7 +12,7 @@ use super::calibrated::{Basis, Calibrated, Finder, Places, series, single};
 use super::check::spelling;
 use super::comparable::ComparedUnits;
 use super::limits::ParameterLimits;
-use super::unit::common_names;
+use super::unit::{UnitHistoryRequest, common_names};
 use crate::document::{
     BatchSummary, BatchWithoutUnit, BeyondLimit, CapabilitySummary, OutlyingUnit, Program, UNITS_HISTORY_SCHEMA,
     UnitFinding, UnitFindingKind, UnitsHistoryReport, UnitsParameter, UntestedStation,
@@ -29,8 +29,6 @@ pub struct UnitsHistoryRequest {
 
 /// Family-wise level of what is called outlying, drifting or different.
 const FAMILY: f64 = 0.05;
-
-const COVERAGE: f64 = 0.95;
 
 /// Seed of the laws that are drawn.
 const SEED: u64 = 1;
@@ -103,7 +101,7 @@ fn parameter(
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);
     let (low, high) = request.limits.get(name).copied().unwrap_or_default();
-    let capability = capability(values, low, high, COVERAGE).map(|found| CapabilitySummary {
+    let capability = capability(values, low, high, UnitHistoryRequest::COVERAGE).map(|found| CapabilitySummary {
         low,
         high,
         cp: found.cp.map(|cp| cp.value),
@@ -230,7 +228,7 @@ fn outlying(stations: &[&AtStation], lasts: &[&Calibrated], by_parameter: &[OfPa
 
 /// The drift and the scatter of the units by their `numbers` in one parameter.
 fn findings(numbers: &[usize], series: &[Series], lasts: &[&Calibrated], name: &str) -> Vec<UnitFinding> {
-    let Some(between) = Between::of(series, Curve::Line, COVERAGE) else { return Vec::new() };
+    let Some(between) = Between::of(series, Curve::Line, UnitHistoryRequest::COVERAGE) else { return Vec::new() };
     let trends = numbers.iter().zip(unit_trends(series, between.variance, FAMILY));
     let findings = trends.filter_map(|(&n, trend)| {
         let trend = trend?;

@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use centrical::reduction::{PulseTrain, Record, ReducedMounting, ReductionError, SpeedTrace, Survey, average, locate};
+use centrical::reduction::{PulseTrain, Record, ReducedMounting, SpeedTrace, Survey, average, locate};
 use centrical::{OnProgress, advance};
 use rayon::prelude::*;
 
@@ -64,12 +64,7 @@ fn reduce_mounting(
     progress: OnProgress<usize>,
 ) -> Result<OfRecord, Error> {
     let Recorded { record, telemetry, pulses } = in_si(session, recorded);
-    let refused = |source: ReductionError| Error::Reduction {
-        file: session.file.clone(),
-        mounting: number + 1,
-        instead: None,
-        source: Box::new(source),
-    };
+    let refused = |source| Error::reduction(&session.file, number, source);
     let survey = Survey::of(record.as_slice()).map_err(refused)?.with_resolution(session.type_b.resolution);
     advance(progress, 0)?;
     let schedule = schedule(&session.experiment, number);

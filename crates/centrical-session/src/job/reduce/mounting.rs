@@ -1,7 +1,7 @@
 //! A mounting's record in two passes: where its plateaus are, then what they read.
 
 use centrical::OnProgress;
-use centrical::reduction::{PulseTrain, ReducedMounting, ReductionError, locate};
+use centrical::reduction::{PulseTrain, ReducedMounting, locate};
 
 use super::instead::fits_instead;
 use super::schedule::schedule;
@@ -26,12 +26,7 @@ pub(super) fn reduce_mounting(
 ) -> Result<OfRecord, Error> {
     let record = RecordFile::new(session.open_record(number)?, &session.columns, progress);
     let file = session.record_file(number)?;
-    let refused = |source: ReductionError| Error::Reduction {
-        file: file.to_owned(),
-        mounting: number + 1,
-        instead: None,
-        source: Box::new(source),
-    };
+    let refused = |source| Error::reduction(file, number, source);
     let (survey, interpolated) = record.survey(cache)?;
     let survey = survey.with_resolution(session.type_b.resolution);
     let telemetry = session.telemetry(number)?;

@@ -21,7 +21,7 @@ use crate::reduced::{ReducedPlateau, rest_rows};
 pub(crate) fn find_rests(records: &[RestRecord], file: &Path, progress: OnProgress) -> Result<Rests, Error> {
     let refused = |source| match source {
         ReductionError::Stopped(stopped) => stopped.into(),
-        source => Error::Reduction { file: file.to_owned(), mounting: 1, instead: None, source: Box::new(source) },
+        source => Error::reduction(file, 0, source),
     };
     let rests = reduce_rests(records, &|()| progress(0)).map_err(refused)?;
     let count: usize = rests.means.iter().map(Vec::len).sum();

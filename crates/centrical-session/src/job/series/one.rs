@@ -7,7 +7,7 @@ use centrical::OnProgress;
 use centrical_table::TableFormat;
 
 use super::request::SeriesRequest;
-use crate::document::CalibrationResult;
+use crate::document::{CalibrationResult, Method};
 use crate::error::{Error, ErrorKind};
 use crate::experiment::Session;
 use crate::job::calibrate::calibrate_reduced;
@@ -47,7 +47,9 @@ fn try_calibrate(path: &Path, request: &SeriesRequest, progress: OnProgress) -> 
     let text = result.to_json()?;
     let row = result.row(text.as_bytes());
     if request.reduced {
-        write_reduced(&session, &reduced, TableFormat::Csv, &request.out.join("reduced").join(&row.key))?;
+        let exact = (request.method == Method::Exact).then_some(&result);
+        let folder = request.out.join("reduced").join(&row.key);
+        write_reduced(&session, &reduced, exact, TableFormat::Csv, &folder)?;
     }
     let hashes = result.inputs.into_iter().map(|input| input.sha256);
     let files = session.files().into_iter().map(Path::to_owned).zip(hashes).collect();

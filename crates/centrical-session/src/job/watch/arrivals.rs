@@ -312,7 +312,7 @@ impl<'s> Watch<'s> {
 
     fn refused(&self, mounting: usize, source: ReductionError) -> Error {
         let file = self.session.mountings[mounting].record.clone().unwrap_or_default();
-        Error::Reduction { file, mounting: mounting + 1, instead: None, source: Box::new(source) }
+        Error::reduction(&file, mounting, source)
     }
 }
 
