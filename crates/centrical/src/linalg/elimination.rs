@@ -76,7 +76,8 @@ impl Elimination {
         if self.groups.is_empty() { b } else { b.select_rows(&self.order) }
     }
 
-    /// The inverse of [`Elimination::rotated`].
+    /// The inverse of [`Elimination::rotated`] of columns that no unknown misses: zero in all rows that no unknown can follow. The time is
+    /// linear in rows.
     pub fn turned_back(&self, rotated: DMatrix<f64>) -> DMatrix<f64> {
         if self.groups.is_empty() {
             return rotated;
@@ -84,11 +85,9 @@ impl Elimination {
         let mut b = DMatrix::zeros(rotated.nrows(), rotated.ncols());
         scatter(&mut b, &self.order, &rotated);
         for group in &self.groups {
-            let count = group.own.rows.len();
-            let mut q_t = DMatrix::identity(count, count);
-            group.qr.q_tr_mul(&mut q_t);
-            let block = q_t.tr_mul(&b.select_rows(&group.own.rows));
-            scatter(&mut b, &group.own.rows, &block);
+            let q = group.qr.q();
+            let followed = b.select_rows(&group.own.rows[..q.ncols()]);
+            scatter(&mut b, &group.own.rows, &(q * followed));
         }
         b
     }
