@@ -70,6 +70,9 @@ EXTRA = """
 [uncertainty]
 gravity = "1e-5 m/s^2"
 radius = "0.1 mm"
+arm_turn_load = "1 urad at 100 g"
+spin_step = "1 ug"
+bias_drift = "1 ug"
 [prior]
 drho_22 = "1 mm"
 """

@@ -10,13 +10,16 @@ import time
 
 import damage
 import forms
+import growth
 import names
+import results
 import values
 import watching
 import writing
 from judge import Place
 
-GROUPS = {"values": values, "writing": writing, "names": names, "damage": damage, "watching": watching, "forms": forms}
+GROUPS = {"values": values, "writing": writing, "names": names, "damage": damage, "watching": watching, "results": results, "growth": growth,
+          "forms": forms}
 
 
 def main():

@@ -271,7 +271,12 @@ pub fn draw_truth(model: &MeasurementModel, size: f64, seed: u64) -> Vec<f64> {
             known.unwrap_or(size * parameter.typical) * of_rests.normal()
         }
         Kind::CaseTurn(_) => size * parameter.typical * of_rests.normal(),
-        _ => size * parameter.typical * random.normal(),
+        Kind::Tilt(_)
+        | Kind::Turn { .. }
+        | Kind::Shift { .. }
+        | Kind::ProofMass(_)
+        | Kind::Term(_)
+        | Kind::Effect(_) => size * parameter.typical * random.normal(),
     };
     model.parameters().iter().map(&mut drawn).collect()
 }

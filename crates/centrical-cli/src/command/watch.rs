@@ -115,12 +115,8 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     shown?;
     match end {
         WatchEnd::Stopped { plateaus } => {
-            let file = arguments.out.join("watch.json");
-            say(&format!(
-                "Stopped after {}; the same command goes on from {}\n",
-                counted(plateaus, "plateau"),
-                file.display()
-            ));
+            let (file, count) = (arguments.out.join("watch.json"), counted(plateaus, "plateau"));
+            say(&format!("Stopped after {count}; the same command goes on from {}\n", file.display()));
             Ok(Outcome::Done)
         }
         WatchEnd::Complete(result) => {

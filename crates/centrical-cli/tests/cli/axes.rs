@@ -163,7 +163,7 @@ fn a_result_agrees_with_itself() {
         "[0] with 48 numbers",
     );
     refused(&|r| r["plateaus"][2]["mounting"] = 13.into(), "plateaus[2] with mounting 13");
-    refused(&|r| r["plateaus"][2]["covariance"][1][1] = (-1.0).into(), "plateaus[2] with a negative variance");
+    refused(&|r| r["plateaus"][2]["covariance"][1][1] = (-1.0).into(), "plateaus[2] with the variance -1e0");
     refused(&|r| r["tilt"]["probability"] = (-3.0).into(), "a probability of -3 in tilt.probability");
     refused(&|r| r["drift"]["chi_squared"] = (-1.0).into(), "drift.chi_squared = -1");
 }

@@ -131,12 +131,17 @@ fn bound(at: &TomlPath, key: &str, quantity: &Quantity, unknown: &Parameter) -> 
         }
         _ => prior::in_unit_of(at, key, quantity, unknown)?,
     };
-    if value > 0.0 && value.is_finite() {
+    let largest = BEYOND_REASON * unknown.typical;
+    if value > 0.0 && value <= largest {
         Ok(value)
     } else {
-        Err(at.unexpected(key, quantity.to_string(), "a standard uncertainty above 0"))
+        let expected = format!("a standard uncertainty above 0, and at most {largest:.1e} {}", unknown.unit);
+        Err(at.unexpected(key, quantity.to_string(), expected))
     }
 }
+
+/// A bound of an effect is at most as many of its typical magnitudes: beyond them a unit was mistaken.
+const BEYOND_REASON: f64 = 1e6;
 
 /// What an effect that grows is the size of, what it grows with, and to which power.
 fn growth(unknown: &Parameter) -> Option<(Dimension, Dimension, i32)> {

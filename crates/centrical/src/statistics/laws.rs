@@ -5,7 +5,8 @@ use statrs::function::gamma::gamma_ur;
 /// Probability that chi^2 with `nu` degrees of freedom exceeds `chi_squared`; 1 without any degree, 0 if it is not a
 /// finite number.
 pub fn chi_squared_tail(chi_squared: f64, nu: usize) -> f64 {
-    if nu == 0 || chi_squared <= 0.0 {
+    // Below the normal numbers the series that gives the tail takes half of it for nothing and fails.
+    if nu == 0 || chi_squared < f64::MIN_POSITIVE {
         1.0
     } else if chi_squared.is_finite() {
         gamma_ur(0.5 * nu as f64, 0.5 * chi_squared)

@@ -3,6 +3,7 @@
 use std::collections::HashSet;
 
 use centrical::ErrorModel;
+use centrical_table::LARGEST_NUMBER;
 
 use super::schema::{CalibrationResult, ConvergenceSummary, ObservabilitySummary, ParameterEstimate};
 
@@ -24,6 +25,7 @@ pub(super) fn contradiction(result: &CalibrationResult) -> Option<Contradiction>
         .or_else(|| of_observability(&result.observability, n))
         .or_else(|| of_convergence(result.convergence.as_ref()?, n))
         .or_else(|| of_plateaus(result))
+        .or_else(|| of_records(result))
         .or_else(|| of_covariance(result))
         .or_else(|| of_checks(result))
 }
@@ -134,20 +136,43 @@ fn of_convergence(convergence: &ConvergenceSummary, parameters: usize) -> Option
     Some((found, format!("{parameters}, the number of parameters")))
 }
 
-/// Each plateau belongs to a mounting, and no variance is negative.
+/// Each plateau belongs to a mounting, its numbers are of a size that readings have, and its covariances are covariances.
 fn of_plateaus(result: &CalibrationResult) -> Option<Contradiction> {
     let mountings = result.mountings.len();
     result.plateaus.iter().enumerate().find_map(|(n, plateau)| {
         let of = |what: &str| format!("plateaus[{n}] with {what}");
-        let variances = [plateau.covariance, plateau.fit_covariance].map(|c| [0, 1, 2].map(|axis| c[axis][axis]));
+        let mut numbers = [Some(plateau.mean), Some(plateau.residual), plateau.specific_force].into_iter().flatten();
         if !(1..=mountings).contains(&plateau.mounting) {
             Some((of(&format!("mounting {}", plateau.mounting)), format!("1 to {mountings}")))
-        } else if variances.iter().flatten().any(|variance| *variance < 0.0) {
-            Some((of("a negative variance"), "zero or more".to_owned()))
+        } else if let Some(number) = numbers.flatten().find(|number| number.abs() > LARGEST_NUMBER) {
+            Some((of(&format!("the number {number:e}")), format!("{LARGEST_NUMBER:e} at most")))
         } else {
-            None
+            let mut covariances = [plateau.covariance, plateau.fit_covariance].into_iter();
+            let (what, expected) = covariances.find_map(|covariance| of_errors(&covariance))?;
+            Some((of(&what), expected))
         }
     })
+}
+
+/// A covariance of three errors has no negative variance, is symmetric and has no correlation above 1.
+fn of_errors(covariance: &[[f64; 3]; 3]) -> Option<Contradiction> {
+    let variances = [0, 1, 2].map(|axis| covariance[axis][axis]);
+    if let Some(variance) = variances.into_iter().find(|v| *v < 0.0 || *v > LARGEST_NUMBER || v.is_subnormal()) {
+        return Some((format!("the variance {variance:e}"), format!("zero or more, and {LARGEST_NUMBER:e} at most")));
+    }
+    [(0, 1), (0, 2), (1, 2)].into_iter().find_map(|(i, j)| {
+        let (entry, mirrored, most) = (covariance[i][j], covariance[j][i], (variances[i] * variances[j]).sqrt());
+        let is_one = (entry - mirrored).abs() <= ROUNDING * most && entry.abs() <= (1.0 + ROUNDING) * most;
+        let expected = || format!("two equal ones, {most:e} at most, the product of the standard uncertainties");
+        (!is_one).then(|| (format!("the covariances {entry:e} and {mirrored:e}"), expected()))
+    })
+}
+
+/// The steps of the drawings of records are longer than zero.
+fn of_records(result: &CalibrationResult) -> Option<Contradiction> {
+    let (n, record) =
+        result.records.iter().enumerate().find(|(_, record)| !record.step.is_normal() || record.step < 0.0)?;
+    Some((format!("records[{n}] with steps of {:e} s", record.step), "above 0".to_owned()))
 }
 
 /// The covariance is symmetric, and has the squares of the standard uncertainties on its diagonal and no correlation above 1.
