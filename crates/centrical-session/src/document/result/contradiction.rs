@@ -141,7 +141,7 @@ fn of_plateaus(result: &CalibrationResult) -> Option<Contradiction> {
     let mountings = result.mountings.len();
     result.plateaus.iter().enumerate().find_map(|(n, plateau)| {
         let of = |what: &str| format!("plateaus[{n}] with {what}");
-        let mut numbers = [Some(plateau.mean), Some(plateau.residual), plateau.specific_force].into_iter().flatten();
+        let numbers = [Some(plateau.mean), Some(plateau.residual), plateau.specific_force].into_iter().flatten();
         if !(1..=mountings).contains(&plateau.mounting) {
             Some((of(&format!("mounting {}", plateau.mounting)), format!("1 to {mountings}")))
         } else if let Some(number) = numbers.flatten().find(|number| number.abs() > LARGEST_NUMBER) {
