@@ -12,7 +12,7 @@ use super::record::RecordSlice;
 use super::survey::Survey;
 use super::trembling::AttitudePart;
 use super::turning::{draw_out, is_smooth, noise_along, trembles};
-use crate::progress::{OnProgress, Stopped, advance};
+use crate::progress::{OnProgress, advance};
 
 /// The rests of some records.
 #[derive(Debug, Clone, PartialEq)]
@@ -46,7 +46,7 @@ impl<'a> From<RecordSlice<'a>> for RestRecord<'a> {
 /// is left out. Arcs of slow rotation count if the attitudes of all show an ellipsoid. `progress` is asked again and again.
 ///
 /// # Errors
-/// [`ReductionError`] if a record is invalid (lengths, times) or too short, or when the caller stops.
+/// [`ReductionError`] if a record is invalid (lengths, times), too short or saturated in a rest, or when the caller stops.
 pub fn reduce_rests(records: &[RestRecord], progress: OnProgress<()>) -> Result<Rests, ReductionError> {
     let located = records.iter().map(|record| {
         let located = locate_rests(&Survey::of(record.samples)?, record.turning_radius.is_some())?;
@@ -118,14 +118,18 @@ fn uncertain_sizes(fits: &[PlateauFit], white: &Vector3<f64>, ellipsoid: &Ellips
     errors.into_iter().map(|error| error * sum).collect()
 }
 
-/// The rests of a record that are steady, and its arcs that are smooth.
-fn averaged(located: &Located, record: &RestRecord, progress: OnProgress<()>) -> Result<Vec<PlateauFit>, Stopped> {
+/// The rests of a record that are steady, and its arcs that are smooth. A rest at the end of the range refuses the record: without it a
+/// face would be missing in silence.
+fn averaged(located: &Located, record: &RestRecord, progress: OnProgress<()>) -> Result<Vec<PlateauFit>, ReductionError> {
     let is_smooth =
         |fit: &PlateauFit| record.turning_radius.is_none_or(|radius| is_smooth(fit, located.sample_noise(), radius));
     let mut fits = Vec::new();
     for rest in 0..located.windows().len() {
         advance(progress, ())?;
-        fits.extend(average(located, rest, record.samples, 0).ok().filter(is_smooth));
+        match average(located, rest, record.samples, 0) {
+            Err(saturated @ ReductionError::Saturated { .. }) => return Err(saturated),
+            fit => fits.extend(fit.ok().filter(is_smooth)),
+        }
     }
     Ok(fits)
 }
