@@ -166,6 +166,7 @@ pub(super) fn rival(rival: Rival) -> &'static str {
                 "scale of the rests of [[tumble]] that differs from the arm's: another temperature or gravity"
             }
             Extension::RestsUnit => "another unit, or axes in another order, in the rests of [[tumble]]",
+            Extension::RestsTilt => "attitudes of rests that are off by more than is stated of them",
             Extension::SpinTurn => "turn of the unit between rest and spinning",
             Extension::Disturbance(Course::Spinning) => {
                 "step between rest and spinning: an aliased line or rectified vibration"

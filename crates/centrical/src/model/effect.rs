@@ -52,6 +52,13 @@ pub enum Effect {
         /// Index of the mounting.
         mounting: usize,
     },
+    /// Tilt of a rest beyond what is stated of its attitude [rad], about reference axis 1 or 2.
+    RestTilt {
+        /// Reference axis, 0 or 1.
+        axis: usize,
+        /// Index of the position.
+        position: usize,
+    },
     /// Relative stretch of the arm, `R_1 (1 + kappa law)` (IEEE Std 836), of one seat or of all.
     ArmStretch {
         /// What it grows with.
@@ -211,6 +218,7 @@ impl Effect {
             Self::Gravity
             | Self::Monomial { .. }
             | Self::Disturbance { .. }
+            | Self::RestTilt { .. }
             | Self::Turning { .. }
             | Self::Rounding { .. } => false,
             Self::ElasticTurn { .. }
@@ -237,6 +245,7 @@ impl Effect {
             Self::ElasticTurn { .. }
             | Self::PositionTurn { .. }
             | Self::SpinTurn { .. }
+            | Self::RestTilt { .. }
             | Self::PositionShift { .. } => true,
             Self::ArmTurn { .. }
             | Self::MountingTurn { .. }

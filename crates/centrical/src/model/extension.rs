@@ -51,6 +51,8 @@ pub enum Extension {
     RestsScale,
     /// Terms of first degree of the rests of every other switch-on: of another unit, or in another order of axes.
     RestsUnit,
+    /// Tilts of the rests in known attitudes, two each, beyond what is stated of these.
+    RestsTilt,
     /// Turn of the unit while spinning against that at rest, three per position.
     SpinTurn,
     /// A disturbance of the readings, one per newtonometer.
@@ -74,7 +76,7 @@ pub enum Difference {
 
 impl Extension {
     /// Every extension with its name as written in sessions and plans.
-    pub const NAMED: [(&'static str, Self); 30] = [
+    pub const NAMED: [(&'static str, Self); 31] = [
         ("elastic-turn-speed", Self::ElasticTurn(Law::Speed)),
         ("elastic-turn-load", Self::ElasticTurn(Law::Load)),
         ("arm-stretch-speed", Self::ArmStretch(Law::Speed)),
@@ -97,6 +99,7 @@ impl Extension {
         ("rests-bias", Self::RestsBias),
         ("rests-scale", Self::RestsScale),
         ("rests-unit", Self::RestsUnit),
+        ("rests-tilt", Self::RestsTilt),
         ("spin-turn", Self::SpinTurn),
         ("spin-step", Self::Disturbance(Course::Spinning)),
         ("spin-square", Self::Disturbance(Course::SquaredSpeed)),
@@ -181,6 +184,14 @@ impl Extension {
                 of_rests(experiment, error_model, "rests_scale", |monomial, axis| *monomial == Monomial::power(axis, 1))
             }
             Self::RestsUnit => of_rests(experiment, error_model, "rests_unit", |monomial, _| monomial.degree() == 1),
+            Self::RestsTilt => {
+                let known = experiment.positions.iter().enumerate().filter(|(_, p)| p.attitude_uncertainty.is_some());
+                let tilt = |axis: usize, position: usize, id: &str| {
+                    let name = format!("rest_tilt_{}[{id}]", axis + 1);
+                    effect(name, "rad", Group::Attitude, Effect::RestTilt { axis, position }, 1e-3)
+                };
+                known.flat_map(|(k, position)| [0, 1].map(|axis| tilt(axis, k, &position.id))).collect()
+            }
             Self::SpinTurn => by_position(experiment, |axis, position, id| {
                 let name = format!("spin_turn_{}[{id}]", axis + 1);
                 effect(name, "rad", Group::SpinTurn, Effect::SpinTurn { axis, position }, 1e-3)

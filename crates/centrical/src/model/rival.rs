@@ -106,6 +106,7 @@ impl Rival {
                 Extension::RestsBias => "df0, by switch-on of rests",
                 Extension::RestsScale => "f_i, by switch-on of rests",
                 Extension::RestsUnit => "f_j, by switch-on of rests",
+                Extension::RestsTilt => "theta, by rest",
                 Extension::SpinTurn => "delta while spinning, by position",
                 Extension::Disturbance(Course::Spinning) => "1 where Omega > 0",
                 Extension::Disturbance(Course::SquaredSpeed) => "Omega^2",
@@ -143,6 +144,7 @@ impl Rival {
                 | Extension::MountingShift
                 | Extension::MountingTurn
                 | Extension::MountingTilt
+                | Extension::RestsTilt
                 | Extension::SpinTurn
                 | Extension::OneMounting(..) => "mechanics of the arm and the seat",
                 Extension::Disturbance(Course::Yield) => "IEEE Std 1293, open loop",

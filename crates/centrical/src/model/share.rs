@@ -54,6 +54,7 @@ impl MeasurementModel {
             }
             Effect::MountingTurn { axis, mounting } => only(mounting == here, Share::Turn(along(axis))),
             Effect::MountingTilt { axis, mounting } => only(mounting == here && set_point.is_rest(), Share::Tilt(axis)),
+            Effect::RestTilt { axis, position: k } => only(k == position, Share::Tilt(axis)),
             Effect::ArmStretch { law, seat } => {
                 only(is_on(seat), Share::Arm(Vector3::x() * (r0_y.x * law.value(omega_squared, r0_y.x))))
             }

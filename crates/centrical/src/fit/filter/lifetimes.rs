@@ -129,6 +129,7 @@ fn acts_on(experiment: &Experiment, effect: Effect, here: usize) -> bool {
         Effect::ElasticTurn { position: k, .. }
         | Effect::PositionTurn { position: k, .. }
         | Effect::SpinTurn { position: k, .. }
+        | Effect::RestTilt { position: k, .. }
         | Effect::PositionShift { position: k, .. } => k == position,
         Effect::MountingTurn { mounting, .. }
         | Effect::MountingTilt { mounting, .. }
