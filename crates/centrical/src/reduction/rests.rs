@@ -120,7 +120,11 @@ fn uncertain_sizes(fits: &[PlateauFit], white: &Vector3<f64>, ellipsoid: &Ellips
 
 /// The rests of a record that are steady, and its arcs that are smooth. A rest at the end of the range refuses the record: without it a
 /// face would be missing in silence.
-fn averaged(located: &Located, record: &RestRecord, progress: OnProgress<()>) -> Result<Vec<PlateauFit>, ReductionError> {
+fn averaged(
+    located: &Located,
+    record: &RestRecord,
+    progress: OnProgress<()>,
+) -> Result<Vec<PlateauFit>, ReductionError> {
     let is_smooth =
         |fit: &PlateauFit| record.turning_radius.is_none_or(|radius| is_smooth(fit, located.sample_noise(), radius));
     let mut fits = Vec::new();
