@@ -10,8 +10,8 @@ use super::calibrate::calibrate_reduced;
 use crate::document::{Method, RecordFindings};
 use crate::error::{Error, Place};
 use crate::experiment::{
-    EXPERIMENT_FILE, PlateauMean, RestTable, Session, SpeedSource, write_attitudes, write_plateaus,
-    write_plateaus_parquet,
+    EXPERIMENT_FILE, PlateauMean, RestTable, Session, SpeedSource, refuse_session_of_records, write_attitudes,
+    write_plateaus, write_plateaus_parquet,
 };
 use crate::reduced::Reduced;
 use crate::settings::editable;
@@ -26,7 +26,7 @@ const RESTS: [&str; 2] = ["rests.csv", "attitudes.csv"];
 /// Calibrating it gives the numbers that calibrating the records gives.
 ///
 /// # Errors
-/// [`Error`] if the folder is the session's own, or does not take the files.
+/// [`Error`] if the folder is that of a session with records, the session's own at that, or does not take the files.
 pub fn write_reduced(session: &Session, reduced: &Reduced, format: TableFormat, folder: &Path) -> Result<(), Error> {
     let _claim = claim_folder(folder)?;
     let experiment_file = folder.join(EXPERIMENT_FILE);
@@ -34,6 +34,7 @@ pub fn write_reduced(session: &Session, reduced: &Reduced, format: TableFormat, 
         let expected = "another folder than the session's own";
         return Err(Error::content(&experiment_file, Place::Whole, "the session itself", expected));
     }
+    refuse_session_of_records(folder)?;
     let (name, write): (_, fn(&Path, &[PlateauMean]) -> _) = match format {
         TableFormat::Csv => ("plateaus.csv", write_plateaus),
         TableFormat::Parquet => ("plateaus.parquet", write_plateaus_parquet),

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use centrical::unwatched;
-use centrical_table::write_whole;
+use centrical_table::{harmless, write_whole};
 
 use super::ledger::Ledger;
 use super::request::SeriesRequest;
@@ -77,8 +77,9 @@ fn line(text: &mut String, session: &str, row: &Row) {
         writeln!(text, "{},{acceptable},{objections},{chi_squared},{freedom},{},{message}", fields.join(","), row.key);
 }
 
-/// A field as RFC 4180 has it.
+/// A field as RFC 4180 has it, without characters that are not shown.
 fn quoted(text: &str) -> String {
-    let is_plain = !text.contains([',', '"', '\n', '\r']);
-    if is_plain { text.to_owned() } else { format!("\"{}\"", text.replace('"', "\"\"")) }
+    let text = harmless(text);
+    let is_plain = !text.contains([',', '"', '\n']);
+    if is_plain { text.into_owned() } else { format!("\"{}\"", text.replace('"', "\"\"")) }
 }
