@@ -108,9 +108,10 @@ def types(place):
     np.save(folder / "h.npy", records)
     pq.write_table(pa.table(halves), folder / "h.parquet")
     feather(pa.table(halves), folder / "h.arrow")
-    for end in ("npz", "npy", "parquet", "arrow"):
-        done = run(["compensate", place.result, f"h.{end}", "--out", "o.csv"], folder)
-        found.judge(f"float16, {end}", done, codes=(2,), why=None if "16" in done.message else "not named")
+    np.save(folder / "matrix.npy", np.array(list(halves.values())).T)
+    for name in ("h.npz", "h.npy", "matrix.npy", "h.parquet", "h.arrow"):
+        done = run(["compensate", place.result, name, "--out", "o.csv"], folder)
+        found.judge(f"float16, {name}", done, codes=(2,), why=None if "16" in done.message else "not named")
     shutil.rmtree(folder)
     return found
 

@@ -22,7 +22,7 @@ def records(place):
     found = Group("rows and columns")
     folder = place.new()
     lines = (EXAMPLE / "records/m01.csv").read_text().splitlines()
-    for cell in ("#N/A", "#DIV/0!", "#NUM!", "#VALUE!", "#REF!", "#NAME?", "#NULL!", "#n/a"):
+    for cell in ("#N/A", "#DIV/0!", "#NUM!", "#VALUE!", "#REF!", "#NAME?", "#NULL!", "#n/a", "#SPILL!", "#Н/Д", "#NV", "#DIV/0", "#####"):
         for row in (1, 2, 500, len(lines) - 1):
             spoilt = list(lines)
             spoilt[row] = ",".join([cell, *spoilt[row].split(",")[1:]])

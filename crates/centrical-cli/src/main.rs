@@ -68,8 +68,7 @@ fn main() -> ExitCode {
     let outcome = match matches.and_then(|matches| Arguments::from_arg_matches(&matches)) {
         Ok(arguments) => run(arguments.command),
         Err(text) if text.use_stderr() => {
-            // If standard error does not take it there is nobody to tell.
-            let _ = text.print();
+            say(&in_short(&text.render().to_string()));
             return ExitCode::from(2);
         }
         Err(help) => written(help.print().and_then(|()| io::stdout().flush())).map(|()| Outcome::Done),
@@ -83,6 +82,23 @@ fn main() -> ExitCode {
             ExitCode::from(2)
         }
     }
+}
+
+/// What is wrong with the arguments, of each long line its ends: what was given stands before what was expected.
+fn in_short(text: &str) -> String {
+    const LONGEST_END: usize = 400;
+    let line = |line: &str| {
+        let letters: Vec<char> = line.chars().collect();
+        match letters.len().checked_sub(LONGEST_END) {
+            Some(last) if last > LONGEST_END => {
+                let [start, end]: [String; 2] =
+                    [&letters[..LONGEST_END], &letters[last..]].map(|ends| ends.iter().collect());
+                format!("{start} ... {end}\n")
+            }
+            _ => format!("{line}\n"),
+        }
+    };
+    text.lines().map(line).collect()
 }
 
 fn run(command: Command) -> Result<Outcome, Error> {

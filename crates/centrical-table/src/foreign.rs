@@ -18,6 +18,23 @@ pub fn harmless_line(text: &str) -> Cow<'_, str> {
     if text.contains(['\n', '\r', '\t']) { Cow::Owned(text.replace(['\n', '\r', '\t'], " ")) } else { text }
 }
 
+/// A document in JSON with the same characters escaped, so that it is the same document to whoever reads it.
+pub fn escaped(json: &str) -> Cow<'_, str> {
+    let is_left = |c| matches!(c, '\n' | '\t') || !is_harmful(c);
+    if json.chars().all(is_left) {
+        return Cow::Borrowed(json);
+    }
+    let mut text = String::with_capacity(json.len());
+    for c in json.chars() {
+        if is_left(c) {
+            text.push(c);
+        } else {
+            text.extend(c.encode_utf16(&mut [0; 2]).iter().map(|unit| format!("\\u{unit:04x}")));
+        }
+    }
+    Cow::Owned(text)
+}
+
 /// A text cut to `most` characters, three dots in place of the rest.
 pub fn cut(text: &str, most: usize) -> Cow<'_, str> {
     match text.char_indices().nth(most) {
@@ -60,6 +77,15 @@ mod tests {
             assert_eq!(harmless(text), text);
         }
         assert_eq!(harmless_line("a\r\nb\u{1b}"), "a  b\u{fffd}");
+    }
+
+    #[test]
+    fn what_is_not_shown_is_escaped_in_json() {
+        assert_eq!(
+            escaped("{\n\"\u{9b}\u{202e}\u{e0041}\": \"µ\"}"),
+            r#"{
+"\u009b\u202e\udb40\udc41": "µ"}"#
+        );
     }
 
     #[test]

@@ -58,7 +58,7 @@ pub use bytes::Bytes;
 pub use binary::{Cell, Kind, TypedColumn, TypedReader};
 pub use column::{ColumnName, Field, LARGEST_NUMBER, Rule, TableLines, UnitsFound, is_missing};
 pub use error::{Error, Place, quoted, shown_path};
-pub use foreign::{cut, harmless, harmless_line};
+pub use foreign::{cut, escaped, harmless, harmless_line};
 pub use reader::{Extent, TableReader, estimate_rows, text_form};
 pub use rows::{Rows, to_scale};
 pub use source::{Source, SourceReader};

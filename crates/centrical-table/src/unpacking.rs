@@ -17,6 +17,8 @@ pub(crate) struct Unpacked<R> {
     left: u64,
     most: u64,
     sum: Option<Sum>,
+    /// Bytes that it is stated to be.
+    stated: Option<u64>,
 }
 
 /// A CRC-32 on the way to the one that was written with the bytes.
@@ -35,7 +37,12 @@ impl<R: Read> Unpacked<R> {
     pub fn new(input: R, packed: u64, crc_32: Option<u32>) -> Self {
         let most = most_bytes(packed);
         let sum = crc_32.map(|written| Sum { hasher: Hasher::new(), written });
-        Self { input, left: most, most, sum }
+        Self { input, left: most, most, sum, stated: None }
+    }
+
+    /// The same where the number of bytes is stated.
+    pub fn to_be(self, stated: Option<u64>) -> Self {
+        Self { stated, ..self }
     }
 }
 
@@ -46,6 +53,13 @@ impl<R: Read> Read for Unpacked<R> {
             let most = self.most;
             io::Error::new(io::ErrorKind::InvalidData, format!("it unpacks to more than {most} bytes"))
         })?;
+        let unpacked = self.most - self.left;
+        if let Some(stated) =
+            self.stated.filter(|stated| unpacked > *stated || read == 0 && !bytes.is_empty() && unpacked < *stated)
+        {
+            let found = format!("it unpacks to {unpacked} bytes where {stated} are stated");
+            return Err(io::Error::new(io::ErrorKind::InvalidData, found));
+        }
         if let Some(sum) = &mut self.sum {
             sum.hasher.update(&bytes[..read]);
             if read == 0 && !bytes.is_empty() && sum.hasher.clone().finalize() != sum.written {

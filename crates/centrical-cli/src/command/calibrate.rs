@@ -113,7 +113,7 @@ pub fn outputs(out: Option<&Path>, result: Option<&Path>) -> Vec<PathBuf> {
 }
 
 /// The current folder may be anybody's: a result there is replaced by one of the same unit alone.
-fn refuse_another_unit(file: &Path, session: &Session) -> Result<(), Error> {
+pub fn refuse_another_unit(file: &Path, session: &Session) -> Result<(), Error> {
     if !file.exists() {
         return Ok(());
     }

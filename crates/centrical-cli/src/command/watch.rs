@@ -17,6 +17,7 @@ use centrical_live::Watched;
 use centrical_session::LiveRequest;
 
 use crate::alarm::Alarm;
+use crate::command::calibrate::refuse_another_unit;
 use crate::given::{chance, seconds, target};
 use crate::interruption::asked_to_end;
 use crate::outcome::Outcome;
@@ -72,6 +73,7 @@ pub struct Arguments {
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let session = Session::read_before_rests(&arguments.session)?;
+    refuse_another_unit(&arguments.out.join("result.json"), &session)?;
     #[cfg(feature = "serve")]
     let mut server = arguments.serving.bind()?;
     #[cfg(feature = "serve")]

@@ -148,6 +148,11 @@ fn a_result_agrees_with_itself() {
         |unit: &str, scale: f64| serde_json::json!({"unit": unit, "scale": [1.0, scale, 1.0], "bias": [0.0, 0.0, 0.0]});
     refused(&|r| r["output"] = raw("mg", 1.0), "one of counts, V");
     refused(&|r| r["output"] = raw("counts", 0.0), "numbers other than zero");
+    let of_unit = |r: &mut Value| {
+        let parameters = r["parameters"].as_array_mut().unwrap();
+        parameters.iter_mut().find(|p| p["name"] == "df_1").unwrap()["unit"] = "mg".into();
+    };
+    refused(&of_unit, "found df_1 in \"mg\", expected \"m/s^2\", the unit of its term");
     refused(&|r| r["parameters"][3]["estimable"] = false.into(), "a value and estimable: false");
     let terms = |r: &mut Value| r["model"]["error_model"].as_array_mut().unwrap().clone();
     refused(

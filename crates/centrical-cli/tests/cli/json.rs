@@ -214,3 +214,20 @@ fn quiet_commands_print_nothing_else() {
     assert_eq!((refused.status.code(), refused.stdout.len()), (Some(2), 0));
     assert!(String::from_utf8_lossy(&refused.stderr).contains("nothing.toml"));
 }
+
+/// What a terminal would obey is escaped in JSON, the same text to whoever reads it, and replaced in a table as text.
+#[test]
+fn names_that_are_not_shown() {
+    let copy = Copy::new();
+    copy.edit("experiment.toml", |text| text.replacen("\"0001\"", r#""a\u001bb\u202Ec\u009bd\uFFFE""#, 1));
+    let session = copy.session();
+    let series = copy.run(&["series", session.to_str().unwrap(), "--out", "store", "-q"]);
+    assert_eq!(series.status.code(), Some(0), "{}", String::from_utf8_lossy(&series.stderr));
+    let table = fs::read_to_string(copy.out().join("store/series.csv")).unwrap();
+    assert!(table.contains(",a\u{fffd}b\u{fffd}c\u{fffd}d\u{fffd},"), "{table}");
+    assert_eq!(copy.calibrate(&[]).status.code(), Some(0));
+    let result = fs::read_to_string(copy.out().join("result.json")).unwrap();
+    assert!(result.contains(r#""a\u001bb\u202ec\u009bd\ufffe""#), "{}", &result[..400]);
+    let result: Value = serde_json::from_str(&result).unwrap();
+    assert_eq!(result["session"]["unit_serial"], "a\u{1b}b\u{202e}c\u{9b}d\u{fffe}");
+}

@@ -101,4 +101,14 @@ fn a_session_is_not_written_over() {
     assert_eq!(run.status.code(), Some(2));
     let message = String::from_utf8(run.stderr).unwrap();
     assert!(message.contains("expected another folder than the session's own"), "{message}");
+    // Another session stays as it is if it has records; one of means is what the command writes.
+    let file = out.join("experiment.toml");
+    let experiment = fs::read(example().join("experiment.toml")).unwrap();
+    fs::write(&file, &experiment).unwrap();
+    let run = reduce(&out, "csv", "2");
+    let message = String::from_utf8(run.stderr).unwrap();
+    assert!(run.status.code() == Some(2) && message.contains("experiment.toml: found a session, "), "{message}");
+    assert!(fs::read(&file).unwrap() == experiment);
+    fs::remove_file(&file).unwrap();
+    assert!(reduce(&out, "csv", "2").status.success() && reduce(&out, "csv", "2").status.success());
 }

@@ -223,4 +223,9 @@ fn usage() {
     assert_eq!(copy.run(&["calibrate", "nowhere"]).status.code(), Some(2));
     assert_eq!(copy.run(&["calibrade"]).status.code(), Some(2));
     assert_eq!(copy.run(&["--help"]).status.code(), Some(0));
+    let message = |arguments: &[&str]| String::from_utf8(copy.run(arguments).stderr).unwrap();
+    let hostile = message(&["a\u{202e}b\u{2066}c\u{200b}d\u{9b}e"]);
+    assert!(hostile.contains("'a\u{fffd}b\u{fffd}c\u{fffd}d\u{fffd}e'"), "{hostile:?}");
+    let long = message(&["calibrate", "nowhere", "--hold-out", &"Z".repeat(4000)]);
+    assert!(long.len() < 1200 && long.contains("expected MOUNTING:PLATEAU such as 4:3"), "{long}");
 }

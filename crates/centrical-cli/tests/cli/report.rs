@@ -156,6 +156,19 @@ fn russian_has_its_words_and_commas() {
     assert!(dcc.contains("<dcc:content lang=\"ru\">Параметры</dcc:content>"));
 }
 
+/// What has no line of a history is none.
+#[test]
+fn a_history_has_lines() {
+    let copy = calibrated("en");
+    for text in ["", "[[[[", "    "] {
+        fs::write(copy.out().join("h.jsonl"), text).unwrap();
+        let run = copy.run(&["report", "result.json", "--history", "h.jsonl", "--html", "h.html"]);
+        let message = String::from_utf8(run.stderr).unwrap();
+        assert_eq!(run.status.code(), Some(2), "{message}");
+        assert!(message.contains("h.jsonl: found no whole line, expected the history of a watch"), "{message}");
+    }
+}
+
 /// A certificate without the laboratory's data is refused, as is a laboratory file with a mistake, by place.
 #[test]
 fn certificates_need_the_laboratory() {

@@ -124,6 +124,18 @@ fn a_record_that_is_pasted_twice_counts_once() {
     assert!(text.contains("record.csv: found the readings of earlier rests in 24 others"), "{text}");
 }
 
+/// A session with records is not written over.
+#[test]
+fn a_session_with_records_stays() {
+    let copy = Copy::new();
+    let file = copy.session().join("experiment.toml");
+    let before = fs::read(&file).unwrap();
+    let output = copy.run(&["tumble", &example("record.csv"), "--gravity", "9.81523", "--out", "../session"]);
+    assert_eq!(output.status.code(), Some(2), "{}", said(&output));
+    assert!(said(&output).contains("experiment.toml: found a session, "), "{}", said(&output));
+    assert!(fs::read(&file).unwrap() == before);
+}
+
 /// Names go into the session of the rests as TOML writes them.
 #[test]
 fn names_of_any_characters_are_written() {

@@ -63,6 +63,20 @@ fn a_copied_record_is_refused() {
     assert!(message.contains("m02.csv: found the readings of mounting 1, "), "{message}");
 }
 
+/// The result of another unit is not written over.
+#[test]
+fn a_result_of_another_unit_stays() {
+    let copy = Copy::new();
+    assert_eq!(copy.calibrate(&[]).status.code(), Some(0));
+    let result = fs::read(copy.out().join("result.json")).unwrap();
+    copy.edit("experiment.toml", |text| text.replacen("serial = \"0001\"", "serial = \"0002\"", 1));
+    let run = copy.run(&["watch", copy.session().to_str().unwrap(), "--quiet", "0", "--once"]);
+    let message = String::from_utf8(run.stderr).unwrap();
+    assert_eq!(run.status.code(), Some(2), "{message}");
+    assert!(message.contains("result.json: found the result of unit \"TA-200\" \"0001\", "), "{message}");
+    assert!(fs::read(copy.out().join("result.json")).unwrap() == result);
+}
+
 /// Records that come piece by piece, lines in part; Ctrl-C in the middle, and the same command again: the end is the same as
 /// without.
 #[test]

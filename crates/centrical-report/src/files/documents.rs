@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use centrical::MeasurementModel;
 use centrical_session::{
-    Axes, CalibrationResult, Date, Error, Laboratory, Limitable, NoiseAnalysis, Place, UnknownUnit, claim_folder,
-    create_folder, history_up_to, read_history, refuse_inputs, write_whole,
+    Axes, CalibrationResult, Date, Error, HistoryEntry, Laboratory, Limitable, NoiseAnalysis, Place, UnknownUnit,
+    claim_folder, create_folder, history_up_to, read_history, refuse_inputs, write_whole,
 };
 
 use crate::codegen::{NamedTerm, compensation_source, heading};
@@ -84,7 +84,7 @@ pub fn write_documents(request: &DocumentRequest) -> Result<Documents, Error> {
     let language = request.language;
     let unit = issuer.as_ref().and_then(|issuer| issuer.unit.as_ref());
     if let Some(file) = &request.html {
-        let history = request.history.as_deref().map(read_history).transpose()?.unwrap_or_default();
+        let history = request.history.as_deref().map(lines_of_history).transpose()?.unwrap_or_default();
         let group_of = |name: &str| result.parameter(name).map(|parameter| parameter.group);
         let mut drawn = figures(&result, language);
         drawn.extend(history_figure(&history, &group_of, language));
@@ -151,6 +151,15 @@ pub fn write_noise(analysis: &NoiseAnalysis, folder: &Path) -> Result<(), Error>
         write_whole(&folder.join(name), plot.to_svg().as_bytes())?;
     }
     Ok(())
+}
+
+/// A history that somebody names: with a line at least, which one that is just begun need not have.
+fn lines_of_history(file: &Path) -> Result<Vec<HistoryEntry>, Error> {
+    let lines = read_history(file)?;
+    if lines.is_empty() {
+        return Err(Error::content(file, Place::Whole, "no whole line", "the history of a watch"));
+    }
+    Ok(lines)
 }
 
 /// Draws the history in a folder beside it, if it holds one.

@@ -1,5 +1,6 @@
-//! Documents as JSON text, a line end at the end.
+//! Documents as JSON text, a line end at the end; characters that are not shown are escaped.
 
+use centrical_table::escaped;
 use serde::Serialize;
 
 use crate::error::Error;
@@ -15,7 +16,7 @@ pub(super) fn line(name: &'static str, value: &impl Serialize) -> Result<String,
 }
 
 fn ended(document: &'static str, text: serde_json::Result<String>) -> Result<String, Error> {
-    text.map(|text| text + "\n").map_err(|source| Error::Json { document, source })
+    text.map(|text| escaped(&text).into_owned() + "\n").map_err(|source| Error::Json { document, source })
 }
 
 /// A number, or nothing in place of one that does not exist.

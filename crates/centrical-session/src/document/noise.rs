@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use centrical::reduction::Staircase;
 use centrical::stability::{Analysis, Coefficient, Deviation, Estimator, NoiseTerm, NoiseTerms, Spectrum};
-use centrical_table::write_whole;
+use centrical_table::{escaped, write_whole};
 use serde_json::{Value, json};
 
 use crate::error::Error;
@@ -62,7 +62,7 @@ impl NoiseAnalysis {
             "confidence": self.confidence,
             "readings": self.readings.iter().map(|reading| of_reading(reading, self.confidence)).collect::<Vec<Value>>(),
         });
-        format!("{whole:#}\n")
+        escaped(&format!("{whole:#}\n")).into_owned()
     }
 }
 

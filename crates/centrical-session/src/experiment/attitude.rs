@@ -13,10 +13,17 @@ use crate::error::{Error, quoted};
 /// Characters of a name: it stands in the names of parameters.
 const LONGEST_NAME: usize = 100;
 
-/// Whether a text can be part of the name of a parameter, `delta_1[name]`.
-fn is_name(text: &str) -> bool {
-    let is_shown = harmless_line(text) == text && text.chars().count() <= LONGEST_NAME;
-    is_shown && !text.is_empty() && !text.contains(['[', ']'])
+/// What a text should be, unless it can be part of the name of a parameter, `delta_1[name]`.
+fn expected_of_name(text: &str) -> Option<String> {
+    if text.is_empty() {
+        Some("a name".to_owned())
+    } else if text.contains(['[', ']']) {
+        Some("a name without brackets".to_owned())
+    } else if harmless_line(text) != text {
+        Some("a name of characters that are shown".to_owned())
+    } else {
+        (text.chars().count() > LONGEST_NAME).then(|| format!("a name of at most {LONGEST_NAME} characters"))
+    }
 }
 
 /// The positions in the order of the file. There has to be one, if `needs_one`.
@@ -33,8 +40,8 @@ pub(crate) fn positions(
     let mut positions: Vec<Position> = Vec::with_capacity(tables.len());
     for (k, table) in tables.iter().enumerate() {
         let at = TomlPath::entry(file, "position", k);
-        if !is_name(&table.id) {
-            return Err(at.unexpected("id", quoted(table.id.as_bytes()), "a name without brackets"));
+        if let Some(expected) = expected_of_name(&table.id) {
+            return Err(at.unexpected("id", quoted(table.id.as_bytes()), expected));
         }
         if positions.iter().any(|p| p.id == table.id) {
             return Err(at.unexpected("id", format!("{:?} a second time", table.id), "an id of its own"));

@@ -28,15 +28,27 @@ pub(super) fn found_and_expected(sentence: &str, expected: &str) -> String {
     format!("found text with a fault ({sentence}), expected {expected}")
 }
 
+const TABLE: &str = "a table of keys and values";
+const LIST: &str = "a list of values";
+
 /// What was found and expected, without the names that types have in the program.
 fn in_words(sentence: &str) -> String {
     let Some((found, expected)) = sentence.rsplit_once(", expected ") else { return sentence.to_owned() };
-    let expected = match expected.split(' ').next().unwrap_or_default() {
-        "struct" => "a table of keys and values",
-        "f32" | "f64" => "a number",
-        "u8" | "u16" | "u32" | "u64" | "usize" => "a whole number, zero or more",
-        "i8" | "i16" | "i32" | "i64" | "isize" => "a whole number",
-        _ => expected,
+    let found = match found {
+        "map" => TABLE,
+        "sequence" => LIST,
+        _ => found,
+    };
+    let expected = match expected {
+        "a map" => TABLE,
+        "a sequence" => LIST,
+        _ => match expected.split(' ').next().unwrap_or_default() {
+            "struct" => TABLE,
+            "f32" | "f64" => "a number",
+            "u8" | "u16" | "u32" | "u64" | "usize" => "a whole number, zero or more",
+            "i8" | "i16" | "i32" | "i64" | "isize" => "a whole number",
+            _ => expected,
+        },
     };
     format!("{found}, expected {expected}")
 }

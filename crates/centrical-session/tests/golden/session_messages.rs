@@ -86,7 +86,7 @@ fn the_form_is_kept() {
         (
             r#""9.81523 m/s^2""#,
             "[1]",
-            r#"line 6, column 11: found sequence, expected a number in SI or a string with a unit such as "133.7 rpm""#,
+            r#"line 6, column 11: found a list of values, expected a number in SI or a string with a unit such as "133.7 rpm""#,
         ),
         (
             "\"m/s^2\"\n",
@@ -287,6 +287,11 @@ fn positions() {
             r"[[position]] 2, matrix: found [[NaN, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, 1.0]], expected a right-handed rotation, its rows orthonormal to nine digits",
         ),
         (r#"id = "2""#, r#"id = "[2]""#, r#"[[position]] 2, id: found "[2]", expected a name without brackets"#),
+        (
+            r#"id = "2""#,
+            r#"id = "2\u202E""#,
+            r#"[[position]] 2, id: found "2\u{202e}", expected a name of characters that are shown"#,
+        ),
         (
             r#"position = "2""#,
             r#"position = "1""#,

@@ -64,9 +64,9 @@ pub(super) enum Packing {
     Plain,
     Deflate,
     Zlib,
-    /// A frame of LZ4.
-    Lz4,
-    Zstd,
+    /// A frame of LZ4, or of Zstandard, of bytes that are stated to be as many.
+    Lz4(u64),
+    Zstd(u64),
 }
 
 /// A type of numbers.
@@ -98,6 +98,7 @@ fn find<'a>(file: &Path, arrays: &'a [Array], field: &Field) -> Result<(&'a Arra
     let wrong = |found: String, expected: &str| {
         Err(Error::content(file, Place::Column(field.name.to_string()), found, expected))
     };
+    let half = || wrong("numbers of 16 bits (float16)".to_owned(), "numbers of 32 or 64 bits");
     let all = || arrays.iter().flat_map(|array| array.columns.iter().map(move |column| (array, column)));
     match &field.name {
         ColumnName::Name(name) => {
@@ -105,18 +106,21 @@ fn find<'a>(file: &Path, arrays: &'a [Array], field: &Field) -> Result<(&'a Arra
                 column.name == *name || (array.name == *name && array.columns.len() == 1)
             };
             let mut places = all().filter(is);
-            let is_half =
-                |array: &Array| array.halves.iter().any(|half| half == name || half.is_empty() && array.name == *name);
+            let is_half = |array: &Array| {
+                array
+                    .halves
+                    .iter()
+                    .any(|half| half == name || half.is_empty() && (array.name == *name || array.name.is_empty()))
+            };
             match (places.next(), places.next()) {
                 (Some(place), None) => Ok(place),
-                (None, _) if arrays.iter().any(is_half) => {
-                    wrong("numbers of 16 bits (float16)".to_owned(), "numbers of 32 or 64 bits")
-                }
+                (None, _) if arrays.iter().any(is_half) => half(),
                 (None, _) => wrong(contents(arrays), "a column of this name (for a matrix give [columns] by number)"),
                 _ => wrong(format!("two such columns in {}", contents(arrays)), "one"),
             }
         }
         ColumnName::Number(number) => match arrays {
+            [array] if array.columns.is_empty() && !array.halves.is_empty() => half(),
             [array] => number
                 .checked_sub(1)
                 .and_then(|i| Some((array, array.columns.get(i)?)))
@@ -216,6 +220,16 @@ fn next_bytes(
     })
 }
 
+impl Packing {
+    /// How many bytes are stated to be packed.
+    fn unpacked(self) -> Option<u64> {
+        match self {
+            Self::Lz4(stated) | Self::Zstd(stated) => Some(stated),
+            Self::Plain | Self::Deflate | Self::Zlib => None,
+        }
+    }
+}
+
 impl Bytes {
     /// The bytes of the array from `start` on.
     pub fn open(&self, source: &Source, start: u64) -> io::Result<Box<dyn Read + Send>> {
@@ -224,11 +238,11 @@ impl Bytes {
             Packing::Plain => Box::new(input),
             Packing::Deflate => Box::new(DeflateDecoder::new(input)),
             Packing::Zlib => Box::new(ZlibDecoder::new(input)),
-            Packing::Lz4 => Box::new(FrameDecoder::new(input)),
-            Packing::Zstd => Box::new(zstd::Decoder::with_buffer(input)?),
+            Packing::Lz4(_) => Box::new(FrameDecoder::new(input)),
+            Packing::Zstd(_) => Box::new(zstd::Decoder::with_buffer(input)?),
         };
         if self.packing != Packing::Plain || self.crc_32.is_some() {
-            unpacked = Box::new(Unpacked::new(unpacked, self.length, self.crc_32));
+            unpacked = Box::new(Unpacked::new(unpacked, self.length, self.crc_32).to_be(self.packing.unpacked()));
         }
         let skip = self.skip.saturating_add(start);
         if io::copy(&mut unpacked.by_ref().take(skip), &mut io::sink())? < skip {

@@ -112,8 +112,8 @@ fn arrays(message: &Message, batch: RecordBatchRef, columns: &[ArrowColumn]) -> 
     let rows = batch.length().map_err(failed)?;
     let packing = match batch.compression().map_err(failed)?.map(|c| c.codec()).transpose().map_err(failed)? {
         None => None,
-        Some(CompressionType::Lz4Frame) => Some(Packing::Lz4),
-        Some(CompressionType::Zstd) => Some(Packing::Zstd),
+        Some(CompressionType::Lz4Frame) => Some(Packing::Lz4 as fn(u64) -> Packing),
+        Some(CompressionType::Zstd) => Some(Packing::Zstd as fn(u64) -> Packing),
     };
     let (nodes, buffers) = (batch.nodes().map_err(failed)?, batch.buffers().map_err(failed)?);
     let array = |column: &ArrowColumn| {

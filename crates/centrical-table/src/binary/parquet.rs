@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
-use parquet::basic::{ConvertedType, LogicalType, TimeUnit, Type};
+use parquet::basic::{Compression, ConvertedType, LogicalType, TimeUnit, Type};
 use parquet::column::reader::{ColumnReader, ColumnReaderImpl, get_column_reader};
 use parquet::data_type::DataType;
 use parquet::errors::{ParquetError, Result as ParquetResult};
@@ -30,12 +30,31 @@ pub(super) fn parts(source: &Source, fields: &[Field]) -> Result<Parts, Error> {
     let durations = durations(&metadata);
     let found = fields.iter().map(|field| find(file, &metadata, &durations, field));
     let columns: Vec<usize> = found.collect::<Result<_, Error>>()?;
+    for (field, column) in fields.iter().zip(&columns) {
+        let mut packings = metadata.row_groups().iter().map(|group| group.column(*column).compression());
+        if let Some(other) = packings.find_map(other_packing) {
+            let place = Place::Column(field.name.to_string());
+            return Err(Error::content(file, place, format!("{other} compression"), PACKINGS));
+        }
+    }
     let (file, pages) = (file.to_owned(), Arc::new(Pages(source.clone())));
     Ok(Box::new((0..metadata.num_row_groups()).map(move |group| {
         let open = |c: &usize| column(&file, &pages, &metadata, group, *c);
         let columns = columns.iter().map(open).collect::<ParquetResult<Vec<_>>>();
         columns.map_err(|e| damaged(&file, Some(&e)))
     })))
+}
+
+/// Compressions of pages that are read.
+const PACKINGS: &str = "Snappy, gzip, LZ4, Zstandard or none";
+
+/// The name of a compression that is not read.
+fn other_packing(packing: Compression) -> Option<&'static str> {
+    match packing {
+        Compression::BROTLI(_) => Some("Brotli"),
+        Compression::LZO => Some("LZO"),
+        _ => None,
+    }
 }
 
 /// What the parquet library complains of.

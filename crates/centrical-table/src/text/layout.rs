@@ -7,6 +7,7 @@ use memchr::{memchr2, memchr3};
 use super::batch::{Batch, ROWS};
 use super::fields::{Delimiter, Fault, number, unquoted};
 use super::number::plain;
+use super::shape::is_number;
 use crate::column::{ColumnName, Field, LARGEST_NUMBER, Rule, is_missing};
 use crate::error::quoted;
 use crate::rows::Rows;
@@ -70,6 +71,24 @@ impl Layout {
             Some(_) => Ok(()),
             None => self.any_row(line, row, fields),
         }
+    }
+
+    /// Whether a line that starts with `#` is not a comment but a row whose first cell a spreadsheet could not compute, in whatever language
+    /// it says so: the `#` is glued to a word, there are as many cells as in the other rows, and where numbers belong stand numbers or other
+    /// such words. A row that is commented out has a number behind its `#`. A word alone ends with `!` or `?`.
+    #[cold]
+    pub fn is_failed_row(&self, line: &[u8]) -> bool {
+        let Ok(texts) = self.texts(line) else { return false };
+        let Some((first, others)) = texts.split_first().filter(|_| texts.len() == self.wanted.len()) else {
+            return false;
+        };
+        let could_stand = |text: &Cow<[u8]>| is_number(text) || is_glued(text);
+        let may_stand = |(text, wanted): (&Cow<[u8]>, &Option<usize>)| wanted.is_none() || could_stand(text);
+        let is_row = match others {
+            [] => matches!(first.last(), Some(b'!' | b'?')),
+            _ => others.iter().any(could_stand) && others.iter().zip(&self.wanted[1..]).all(may_stand),
+        };
+        is_row && is_glued(first)
     }
 
     /// What divides the fields, if it is one byte.
@@ -204,6 +223,13 @@ impl Layout {
         let expected = format!("{} as in the first line", self.wanted.len());
         Fault { column: None, found: format!("{found} fields in {}", quoted(line)), expected }
     }
+}
+
+/// Whether a cell is a `#` glued to a word that is no number.
+fn is_glued(cell: &[u8]) -> bool {
+    let Some(word) = cell.strip_prefix(b"#") else { return false };
+    let number = word.iter().position(|byte| *byte != b'#').map_or(&word[..0], |start| &word[start..]);
+    !matches!(word.first(), None | Some(b' ' | b'\t')) && !is_number(number)
 }
 
 /// The number in a record that a text starts with, and its length.

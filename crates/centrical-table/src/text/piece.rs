@@ -128,7 +128,7 @@ impl Piece {
             let (line, rest) = split_line(text);
             if let Some(length) = layout.plain_row(text, &mut row) {
                 text = &text[length..];
-            } else if is_data(line) {
+            } else if is_data(line) || layout.is_failed_row(line) {
                 layout.row(line, &mut row, fields).map_err(|fault| (self.lines, fault))?;
                 if self.keeps_stamps
                     && let Some(stamp) = layout.stamp(line)
@@ -249,7 +249,8 @@ fn is_empty_row(line: &[u8]) -> bool {
     line.iter().all(|byte| matches!(byte, b';' | b',' | b'\t' | b' ' | b'"'))
 }
 
-/// Whether a text that starts with `#` is not a comment but a row whose first cell a spreadsheet could not compute.
+/// Whether a text that starts with `#` is not a comment but a row whose first cell a spreadsheet could not compute, as its first word alone
+/// shows; [`Layout::is_failed_row`] knows the other ones.
 #[cold]
 fn is_failed_cell(text: &[u8]) -> bool {
     const FAILED: [&[u8]; 8] = [b"#N/A", b"#NUM!", b"#VALUE!", b"#DIV/0!", b"#REF!", b"#NAME?", b"#NULL!", b"#CALC!"];

@@ -152,6 +152,7 @@ def write_parquet(t, f):
     pq.write_table(table, HERE / "zstd.parquet", compression="zstd", row_group_size=97)
     pq.write_table(table, HERE / "gzip.parquet", compression="gzip", data_page_version="2.0")
     pq.write_table(table, HERE / "lz4.parquet", compression="lz4", data_page_size=512, write_batch_size=16)
+    pq.write_table(table.slice(0, 3), HERE / "brotli.parquet", compression="brotli")
     pq.write_table(table.cast(required), HERE / "required.parquet", compression="none", use_dictionary=False)
     pq.write_table(table, HERE / "split.parquet", use_dictionary=False, use_byte_stream_split=True)
     pq.write_table(wide, HERE / "wide.parquet")

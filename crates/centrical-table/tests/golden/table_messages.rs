@@ -34,6 +34,22 @@ fn what_is_no_number() {
     ]);
 }
 
+/// A spreadsheet says in its own language what it could not compute; a comment in the midst of rows is none of them.
+#[test]
+fn a_row_that_was_not_computed_is_no_comment() {
+    let words = ["#SPILL!", "#GETTING_DATA", "#Н/Д", "#ДЕЛ/0!", "#NV", "#¡DIV/0!", "#N/V", "######"];
+    for rest in ["1,2,3", "1,#NV,3"] {
+        for word in words {
+            let text = format!("t,f1,f2,f3\n0,1,2,3\n{word},{rest}\n1,1,2,3\n");
+            let expected = format!("m01.csv, line 3, t: found {word:?}, expected a number in s");
+            assert_eq!(message(text), expected);
+        }
+    }
+    let comments = "#time,f1,f2,f3\n#comment, with 3 commas, in it, x\n#0.5,1,2,3\n##0.5,1,2,3\n# made,1,2,3\n#,1,2,3\n#rate,100\n#see,,,\n";
+    let text = format!("t,f1,f2,f3\n{comments}0,1,2,3\n{comments}1,1,2,3\nwrong,1,2,3\n");
+    assert_eq!(message(text), r#"m01.csv, line 20, t: found "wrong", expected a number in s"#);
+}
+
 #[test]
 fn columns() {
     compare(&[

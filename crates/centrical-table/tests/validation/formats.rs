@@ -80,6 +80,15 @@ fn arrow_that_is_no_record() {
         let error = read_record(&file, &named()).unwrap_err();
         assert_eq!(error.to_string(), format!("{}{expected}", file.display()));
     }
+    // The length of a packed column stands before its frame of LZ4: here 97 numbers, and one more that is not there.
+    let mut bytes = fs::read(data("lz4.feather")).unwrap();
+    let frame = bytes.windows(4).position(|word| word == [4, 0x22, 0x4d, 0x18]).unwrap();
+    bytes[frame - 8] += 8;
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("m01.arrow");
+    fs::write(&file, bytes).unwrap();
+    let error = read_record(&file, &named()).unwrap_err().to_string();
+    assert!(error.contains("it unpacks to 776 bytes where 784 are stated"), "{error}");
 }
 
 #[test]
@@ -211,6 +220,7 @@ fn parquet_of_integer_counts() {
 fn parquet_that_is_no_record() {
     let cases = [
         ("null", ", row 8, f2: found no value, expected a number in m/s^2"),
+        ("brotli", ", t: found Brotli compression, expected Snappy, gzip, LZ4, Zstandard or none"),
         ("text", ", f2: found String, expected a number in m/s^2"),
         ("nan", ", row 251, f3: found NaN, expected a number in m/s^2"),
         ("backwards", ", row 151, t: found -9 after 0.9140625, expected a time that does not run backwards"),

@@ -2,7 +2,7 @@
 
 use std::collections::HashSet;
 
-use centrical::ErrorModel;
+use centrical::{ErrorModel, Term};
 use centrical_table::LARGEST_NUMBER;
 
 use super::schema::{CalibrationResult, ConvergenceSummary, ObservabilitySummary, ParameterEstimate};
@@ -86,7 +86,7 @@ fn of_parameters(result: &CalibrationResult) -> Option<Contradiction> {
     Some((format!("{} with a value and estimable: false", other.name), "one of them".to_owned()))
 }
 
-/// The terms of the error model act as their names say, each once, and their coefficients are the parameters of the unit.
+/// The terms of the error model act as their names say, each once, and their coefficients are the parameters of the unit, in their units.
 fn of_terms(result: &CalibrationResult) -> Option<Contradiction> {
     let mut names = HashSet::new();
     for term in &result.model.error_model {
@@ -101,8 +101,15 @@ fn of_terms(result: &CalibrationResult) -> Option<Contradiction> {
         if !names.insert(term.name.as_str()) {
             return Some((format!("the term {:?} twice in error_model", term.name), "each once".to_owned()));
         }
-        if result.parameter(&term.name).is_none() {
+        let Some(parameter) = result.parameter(&term.name) else {
             return Some((format!("no parameter {:?}, a term of error_model", term.name), "one".to_owned()));
+        };
+        let unit = Term::new(term.axis - 1, monomial).unit();
+        if parameter.unit != unit {
+            return Some((
+                format!("{} in {:?}", parameter.name, parameter.unit),
+                format!("{unit:?}, the unit of its term"),
+            ));
         }
     }
     let is_missing = |p: &&ParameterEstimate| ErrorModel::has_name(&p.name) && !names.contains(p.name.as_str());

@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use std::time::UNIX_EPOCH;
 
 use centrical::unwatched;
-use centrical_table::{Source, write_whole};
+use centrical_table::{Source, escaped, write_whole};
 use serde::{Deserialize, Serialize};
 
 use super::one::Done;
@@ -105,7 +105,7 @@ impl Ledger {
                 files: files.collect(),
             };
             let line = serde_json::to_string(&entry);
-            lines += &line.map_err(|source| Error::Json { document: "series.jsonl", source })?;
+            lines += &escaped(&line.map_err(|source| Error::Json { document: "series.jsonl", source })?);
             lines.push('\n');
             self.entries.insert(entry.session.clone(), entry);
         }

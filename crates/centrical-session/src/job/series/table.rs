@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use centrical::unwatched;
-use centrical_table::{csv_field, write_whole};
+use centrical_table::{csv_field, harmless, write_whole};
 
 use super::ledger::Ledger;
 use super::request::SeriesRequest;
@@ -68,12 +68,16 @@ const HEADER: &str = "session,status,date,unit_model,unit_serial,station,accepta
 fn line(text: &mut String, session: &str, row: &Row) {
     let is_done = row.status == Status::Done;
     let chi_squared = if is_done { format!("{:?}", row.chi_squared) } else { String::new() };
-    let fields =
-        [session, row.status.word(), &row.date, &row.unit_model, &row.unit_serial, &row.station].map(csv_field);
+    let fields = [session, row.status.word(), &row.date, &row.unit_model, &row.unit_serial, &row.station].map(shown);
     let acceptable = if is_done { row.acceptable.to_string() } else { String::new() };
     let freedom = if is_done { row.degrees_of_freedom.to_string() } else { String::new() };
-    let objections = csv_field(&row.objections.join(" "));
-    let message = csv_field(&row.failure.message);
+    let objections = shown(&row.objections.join(" "));
+    let message = shown(&row.failure.message);
     let _ =
         writeln!(text, "{},{acceptable},{objections},{chi_squared},{freedom},{},{message}", fields.join(","), row.key);
+}
+
+/// A field without characters that are not shown.
+fn shown(text: &str) -> String {
+    csv_field(&harmless(text))
 }

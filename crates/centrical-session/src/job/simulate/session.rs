@@ -13,7 +13,7 @@ use super::files::{attitudes_path, pulses_path, record_path, telemetry_path, tum
 use super::session_text::{counts_pulses, with_files};
 use crate::document::{Written, WrittenSession, WrittenTumble, truth_json};
 use crate::error::{Error, Place};
-use crate::experiment::{EXPERIMENT_FILE, OutputUnit, RestTable, Session, write_attitudes};
+use crate::experiment::{EXPERIMENT_FILE, OutputUnit, RestTable, Session, refuse_session, write_attitudes};
 use crate::record::Column;
 use crate::truth::Truth;
 
@@ -33,9 +33,7 @@ pub fn simulate_session(
     let plan = &truth.plan;
     let _claim = claim_folder(folder)?;
     let experiment_file = folder.join(EXPERIMENT_FILE);
-    if experiment_file.exists() {
-        return Err(Error::content(&experiment_file, Place::Whole, "a session", "a folder without one"));
-    }
+    refuse_session(folder)?;
     refuse_history(truth)?;
     let columns = Headers::of(plan)?;
     let text = with_files(plan, format)?;

@@ -103,7 +103,7 @@ impl Message<'_> {
     }
 
     /// Where the bytes of a buffer are. A packed one opens with its length unpacked, or -1 if it is plain after all.
-    pub fn bytes_of(&self, offset: i64, length: i64, packing: Option<Packing>) -> Result<Bytes, Error> {
+    pub fn bytes_of(&self, offset: i64, length: i64, packing: Option<fn(u64) -> Packing>) -> Result<Bytes, Error> {
         let wrong = || damaged(self.source.name(), format!("a buffer of {length} bytes from {offset}"));
         let offset = u64::try_from(offset).map_err(|_| wrong())?.checked_add(self.body.start).ok_or_else(wrong)?;
         let length = u64::try_from(length).map_err(|_| wrong())?;
@@ -114,7 +114,7 @@ impl Message<'_> {
         let Some(packing) = packing.filter(|_| length >= 8) else { return Ok(plain) };
         let mut prefix = [0; 8];
         plain.open(self.source, 0).and_then(|mut input| input.read_exact(&mut prefix)).map_err(|_| wrong())?;
-        let packing = if prefix == [0xff; 8] { Packing::Plain } else { packing };
+        let packing = if prefix == [0xff; 8] { Packing::Plain } else { packing(u64::from_le_bytes(prefix)) };
         Ok(Bytes { packing, offset: offset + 8, length: length - 8, skip: 0, crc_32: None })
     }
 }
