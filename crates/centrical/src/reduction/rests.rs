@@ -46,7 +46,7 @@ impl<'a> From<RecordSlice<'a>> for RestRecord<'a> {
 /// is left out. Arcs of slow rotation count if the attitudes of all show an ellipsoid. `progress` is asked again and again.
 ///
 /// # Errors
-/// [`ReductionError`] if a record is invalid (lengths, times), too short or saturated in a rest, or when the caller stops.
+/// [`ReductionError`] if a record is invalid (lengths, times), too short, or stuck or saturated in a rest, or when the caller stops.
 pub fn reduce_rests(records: &[RestRecord], progress: OnProgress<()>) -> Result<Rests, ReductionError> {
     let located = records.iter().map(|record| {
         let located = locate_rests(&Survey::of(record.samples)?, record.turning_radius.is_some())?;
@@ -131,7 +131,7 @@ fn averaged(
     for rest in 0..located.windows().len() {
         advance(progress, ())?;
         match average(located, rest, record.samples, 0) {
-            Err(saturated @ ReductionError::Saturated { .. }) => return Err(saturated),
+            Err(beyond @ (ReductionError::Saturated { .. } | ReductionError::Stuck { .. })) => return Err(beyond),
             fit => fits.extend(fit.ok().filter(is_smooth)),
         }
     }

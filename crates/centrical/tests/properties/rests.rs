@@ -1,6 +1,8 @@
 //! Records of a unit that is turned by hand or on a table: the rests that are found, and the calibration by them.
 
-use centrical::reduction::{PlateauMean, Record, RestRecord, coarse_scale, reduce_rests, repeated_rests};
+use centrical::reduction::{
+    PlateauMean, Record, ReductionError, RestRecord, coarse_scale, reduce_rests, repeated_rests,
+};
 use centrical::uncertainty::{Level, Rivals, chance_of_residuals};
 use centrical::{
     Calibration, Centrifuge, Data, ErrorModel, Experiment, Fit, MeasurementModel, Mounting, Observation, PairRelation,
@@ -291,6 +293,26 @@ fn rests_of_few_samples_or_stamps_are_found() {
         }
         // Four standard deviations of a mean of 90 squares.
         assert!((sum / 90.0 - 1.0).abs() < 0.6, "{sum}");
+    }
+}
+
+/// A record that ends half a standard deviation above the most inclined rest is refused by the axis and the end of the range: the mean of that
+/// rest is no reading.
+#[test]
+fn rests_at_the_end_of_the_range_are_refused() {
+    let mut random = Random::new(44);
+    for run in 0..10 {
+        let axis = run % 3;
+        let Made { mut record, rests, .. } = made(&ON_A_TABLE, &mut random);
+        let mean = |[from, to]: &[f64; 2]| {
+            let [first, last] = [from + 0.5, to - 0.5].map(|time| record.t.partition_point(|t| *t < time));
+            record.f_z[axis][first..last].iter().sum::<f64>() / (last - first) as f64
+        };
+        let end = rests.iter().map(mean).fold(f64::MIN, f64::max) + 0.5 * ON_A_TABLE.white[axis];
+        record.f_z[axis].iter_mut().for_each(|f| *f = f.min(end));
+        let refused = reduce_rests(&[record.as_slice().into()], &unwatched).unwrap_err();
+        let ReductionError::Saturated { axis: found, value, .. } = refused else { panic!("{refused}") };
+        assert_eq!((found, value), (axis, end));
     }
 }
 
