@@ -8,7 +8,7 @@ import shutil
 from judge import Group, run
 
 # Plateaus a mounting, for each of the example's, and what 5000 may take: processor time [s] and memory [bytes].
-REPEATS = (16, 46)
+REPEATS = (4, 46)
 PROCESSOR = 2.0
 MEMORY = 300 << 20
 
