@@ -41,7 +41,7 @@ impl<R: Read> Unpacked<R> {
     }
 
     /// The same where the number of bytes is stated.
-    pub fn to_be(self, stated: Option<u64>) -> Self {
+    pub fn holding(self, stated: Option<u64>) -> Self {
         Self { stated, ..self }
     }
 }

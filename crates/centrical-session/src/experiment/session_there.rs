@@ -33,6 +33,6 @@ fn refuse(folder: &Path, expected: &str, may_be_replaced: fn(&Session) -> bool) 
 /// Whether all readings of a session are means, in tables.
 fn is_of_means(session: &Session) -> bool {
     let is_table = |source: &RestSource| matches!(source, RestSource::Table(_));
-    session.plateaus.is_some() == !session.mountings.is_empty()
+    session.plateaus.is_some() != session.mountings.is_empty()
         && session.rest_tables.iter().all(|table| is_table(&table.source))
 }

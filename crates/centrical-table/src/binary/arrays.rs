@@ -242,7 +242,7 @@ impl Bytes {
             Packing::Zstd(_) => Box::new(zstd::Decoder::with_buffer(input)?),
         };
         if self.packing != Packing::Plain || self.crc_32.is_some() {
-            unpacked = Box::new(Unpacked::new(unpacked, self.length, self.crc_32).to_be(self.packing.unpacked()));
+            unpacked = Box::new(Unpacked::new(unpacked, self.length, self.crc_32).holding(self.packing.unpacked()));
         }
         let skip = self.skip.saturating_add(start);
         if io::copy(&mut unpacked.by_ref().take(skip), &mut io::sink())? < skip {

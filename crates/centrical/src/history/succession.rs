@@ -28,7 +28,9 @@ pub(super) fn succession_probability(values: &[f64], groups: &[usize]) -> Option
 fn moments(groups: &[usize]) -> Option<(f64, f64)> {
     let n = groups.len();
     let mut counts: BTreeMap<usize, f64> = BTreeMap::new();
-    groups.iter().for_each(|group| *counts.entry(*group).or_default() += 1.0);
+    for group in groups {
+        *counts.entry(*group).or_default() += 1.0;
+    }
     let nu = n.checked_sub(counts.len()).filter(|nu| *nu > 0)? as f64;
     // tr A and tr A^2; sum_g |A u_g|^2; u_g^T A u_h.
     let (mut trace, mut square, mut lengths) = (0.0, 0.0, 0.0);
@@ -39,7 +41,9 @@ fn moments(groups: &[usize]) -> Option<(f64, f64)> {
         trace += diagonal;
         square += diagonal * diagonal + diagonal;
         let mut row = BTreeMap::from([(groups[i], diagonal)]);
-        neighbours.iter().for_each(|&j| *row.entry(groups[j]).or_default() -= 1.0);
+        for j in neighbours {
+            *row.entry(groups[j]).or_default() -= 1.0;
+        }
         for (group, sum) in row {
             lengths += sum * sum / counts[&group];
             *products.entry((groups[i], group)).or_default() += sum / (counts[&groups[i]] * counts[&group]).sqrt();
