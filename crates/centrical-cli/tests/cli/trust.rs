@@ -261,7 +261,8 @@ fn compare_names_other_units_and_models() {
     assert!(message.contains(expected), "{message}");
     let rename = |other: &mut Value, from: &str, to: &str| {
         let parameters = other["parameters"].as_array_mut().unwrap();
-        parameters.iter_mut().find(|p| p["name"] == from).unwrap()["name"] = to.into();
+        let parameter = parameters.iter_mut().find(|p| p["name"] == from).unwrap();
+        (parameter["name"], parameter["unit"]) = (to.into(), "s^2/m".into());
     };
     let (code, said) = compared(&|other| {
         let term = &mut other["model"]["error_model"][0];
