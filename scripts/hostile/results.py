@@ -11,7 +11,7 @@ EDITS = {
     "a variance of zero beside covariances": lambda r: r["plateaus"][1]["covariance"][0].__setitem__(0, 0),
     "a variance below numbers": lambda r: r["plateaus"][1]["covariance"][0].__setitem__(0, 1e-310),
     "a covariance of one side": lambda r: r["plateaus"][0]["covariance"][1].__setitem__(0, 1e18),
-    "steps of no length": lambda r: r["records"][0].update(step=5e-324) if r.get("records") else r.update(covariance=[]),
+    "steps of no length": lambda r: r.update(records=[dict(mounting=1, start=0, step=5e-324, low=[[0]] * 3, high=[[1]] * 3)]),
     "a probability of 2": lambda r: r["validity"].update(probability=2),
     "a parameter twice": lambda r: r["parameters"].append(r["parameters"][0]),
     "a covariance without a row": lambda r: r["covariance"].pop(),

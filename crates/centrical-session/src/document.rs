@@ -48,6 +48,7 @@ pub use self::history::{
     UnitFindingKind, UnitHistoryReport, UnitParameter, UnitsHistoryReport, UnitsParameter, UntestedStation,
 };
 pub use self::history_list::{Doubt, DoubtKind, HISTORY_LIST_SCHEMA, HistoryLine, HistoryList};
+pub(crate) use self::json::line as json_line;
 pub use self::models::{CandidateSummary, MODELS_SCHEMA, ModelsReport, NestedTestSummary, TermSupport};
 pub(crate) use self::montecarlo::Repeated;
 pub use self::montecarlo::{MONTE_CARLO_SCHEMA, MonteCarloReport, RepeatedFit, RepeatedParameter, SquareSummary};

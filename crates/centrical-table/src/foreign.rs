@@ -19,10 +19,10 @@ pub fn harmless_line(text: &str) -> Cow<'_, str> {
 }
 
 /// A document in JSON with the same characters escaped, so that it is the same document to whoever reads it.
-pub fn escaped(json: &str) -> Cow<'_, str> {
+pub fn escaped(json: String) -> String {
     let is_left = |c| matches!(c, '\n' | '\t') || !is_harmful(c);
     if json.chars().all(is_left) {
-        return Cow::Borrowed(json);
+        return json;
     }
     let mut text = String::with_capacity(json.len());
     for c in json.chars() {
@@ -32,7 +32,7 @@ pub fn escaped(json: &str) -> Cow<'_, str> {
             text.extend(c.encode_utf16(&mut [0; 2]).iter().map(|unit| format!("\\u{unit:04x}")));
         }
     }
-    Cow::Owned(text)
+    text
 }
 
 /// A text cut to `most` characters, three dots in place of the rest.
@@ -82,7 +82,7 @@ mod tests {
     #[test]
     fn what_is_not_shown_is_escaped_in_json() {
         assert_eq!(
-            escaped("{\n\"\u{9b}\u{202e}\u{e0041}\": \"µ\"}"),
+            escaped("{\n\"\u{9b}\u{202e}\u{e0041}\": \"µ\"}".to_owned()),
             r#"{
 "\u009b\u202e\udb40\udc41": "µ"}"#
         );

@@ -156,7 +156,7 @@ fn russian_has_its_words_and_commas() {
     assert!(dcc.contains("<dcc:content lang=\"ru\">Параметры</dcc:content>"));
 }
 
-/// What has no line of a history is none.
+/// A file without a whole line of a history is refused.
 #[test]
 fn a_history_has_lines() {
     let copy = calibrated("en");

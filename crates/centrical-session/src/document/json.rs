@@ -11,12 +11,12 @@ pub(super) fn document(name: &'static str, value: &impl Serialize) -> Result<Str
 }
 
 /// A document on one line.
-pub(super) fn line(name: &'static str, value: &impl Serialize) -> Result<String, Error> {
+pub(crate) fn line(name: &'static str, value: &impl Serialize) -> Result<String, Error> {
     ended(name, serde_json::to_string(value))
 }
 
 fn ended(document: &'static str, text: serde_json::Result<String>) -> Result<String, Error> {
-    text.map(|text| escaped(&text).into_owned() + "\n").map_err(|source| Error::Json { document, source })
+    text.map(|text| escaped(text) + "\n").map_err(|source| Error::Json { document, source })
 }
 
 /// A number, or nothing in place of one that does not exist.

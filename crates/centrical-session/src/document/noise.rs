@@ -62,7 +62,7 @@ impl NoiseAnalysis {
             "confidence": self.confidence,
             "readings": self.readings.iter().map(|reading| of_reading(reading, self.confidence)).collect::<Vec<Value>>(),
         });
-        escaped(&format!("{whole:#}\n")).into_owned()
+        escaped(format!("{whole:#}\n"))
     }
 }
 

@@ -151,7 +151,7 @@ fn whole(number: usize) -> i64 {
     i64::try_from(number).unwrap_or(i64::MAX)
 }
 
-/// A term with nothing but its name read as yet.
+/// A term by its name; what else it has is read later.
 fn term(name: String) -> RowTerm {
     RowTerm { name, axis: 0, powers: [0; 3], sign_of: None }
 }

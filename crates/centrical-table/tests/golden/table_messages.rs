@@ -34,7 +34,7 @@ fn what_is_no_number() {
     ]);
 }
 
-/// A spreadsheet says in its own language what it could not compute; a comment in the midst of rows is none of them.
+/// A spreadsheet says in its own language what it could not compute. A comment in the midst of rows is left out.
 #[test]
 fn a_row_that_was_not_computed_is_no_comment() {
     let words = ["#SPILL!", "#GETTING_DATA", "#Н/Д", "#ДЕЛ/0!", "#NV", "#¡DIV/0!", "#N/V", "######"];

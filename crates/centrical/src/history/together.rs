@@ -68,19 +68,24 @@ pub fn sameness(sessions: &[SessionEstimates], shared: &[DMatrix<f64>]) -> Optio
     let equations = LeastSquares::new(design, sizes);
     let chi_squared = equations.redundant(&values).norm_squared();
     let probability = chi_squared_tail(chi_squared, degrees_of_freedom);
-    let (basis, values) = (equations.basis(rows), values.rows(0, rows));
-    let residuals = values - &basis * basis.tr_mul(&values);
-    // How far chi^2 falls without a session, r^T (E - Q Q^T)^-1 r with its rows of the orthonormal basis Q.
-    let fall = |n: usize| {
-        let (own, r) = (basis.rows(n * p, p), residuals.rows(n * p, p));
-        Some(r.dot(&(DMatrix::identity(p, p) - own * own.transpose()).cholesky()?.solve(&r)))
-    };
-    let largest = (0..sessions.len()).filter_map(|n| Some((n, fall(n)?))).max_by(|(_, a), (_, b)| a.total_cmp(b));
     // Of two sessions each is as far from the other.
-    let farthest = largest.filter(|_| sessions.len() > 2).map(|(session, fall)| FarthestSession {
+    let farthest = if sessions.len() > 2 { farthest(&equations, &values.rows(0, rows).into_owned(), p) } else { None };
+    let farthest = farthest.map(|(session, fall)| FarthestSession {
         session,
         probability: (sessions.len() as f64 * chi_squared_tail(fall, p)).min(1.0),
         probability_of_others: chi_squared_tail((chi_squared - fall).max(0.0), degrees_of_freedom - p),
     });
     Some(Sameness { chi_squared, degrees_of_freedom, probability, farthest })
+}
+
+/// The session of `p` equations each without which chi^2 falls most, and by how much: `r^T (E - Q Q^T)^-1 r` with its residuals `r` and its rows
+/// of the orthonormal basis `Q`.
+fn farthest(equations: &LeastSquares, values: &DVector<f64>, p: usize) -> Option<(usize, f64)> {
+    let basis = equations.basis(values.len());
+    let residuals = values - &basis * basis.tr_mul(values);
+    let fall = |n: usize| {
+        let (own, r) = (basis.rows(n * p, p), residuals.rows(n * p, p));
+        Some(r.dot(&(DMatrix::identity(p, p) - own * own.transpose()).cholesky()?.solve(&r)))
+    };
+    (0..values.len() / p).filter_map(|n| Some((n, fall(n)?))).max_by(|(_, a), (_, b)| a.total_cmp(b))
 }

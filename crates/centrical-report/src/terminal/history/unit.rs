@@ -106,7 +106,7 @@ fn verdict(screen: &mut Screen, report: &UnitHistoryReport) {
     }
     if let Some(session) = report.deviating() {
         let words = format!(
-            "{}, {}: no session deviates as much by the stated uncertainties with a probability above {}; the others alone: {}",
+            "{}, {}: by the stated uncertainties a session deviates as much with a probability of {}, and the others as they do with {}",
             session.date,
             session.source,
             chance(session.probability),

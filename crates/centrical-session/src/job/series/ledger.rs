@@ -11,12 +11,12 @@ use std::path::{Path, PathBuf};
 use std::time::UNIX_EPOCH;
 
 use centrical::unwatched;
-use centrical_table::{Source, escaped, write_whole};
+use centrical_table::{Source, write_whole};
 use serde::{Deserialize, Serialize};
 
 use super::one::Done;
 use super::request::LEDGER;
-use crate::document::Method;
+use crate::document::{Method, json_line};
 use crate::error::Error;
 use crate::record::Input;
 use crate::store::Status;
@@ -104,9 +104,7 @@ impl Ledger {
                 failed: done.row.status == Status::Failed,
                 files: files.collect(),
             };
-            let line = serde_json::to_string(&entry);
-            lines += &escaped(&line.map_err(|source| Error::Json { document: "series.jsonl", source })?);
-            lines.push('\n');
+            lines += &json_line("series.jsonl", &entry)?;
             self.entries.insert(entry.session.clone(), entry);
         }
         let output = match self.output.take() {
