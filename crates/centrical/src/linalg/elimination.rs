@@ -87,7 +87,10 @@ impl Elimination {
         for group in &self.groups {
             let q = group.qr.q();
             let followed = b.select_rows(&group.own.rows[..q.ncols()]);
-            scatter(&mut b, &group.own.rows, &(q * followed));
+            let mut block = DMatrix::zeros(q.nrows(), b.ncols());
+            // Column by column: a product of two matrices has other last digits on another processor.
+            block.column_iter_mut().zip(followed.column_iter()).for_each(|(mut column, v)| column.gemv(1.0, &q, &v, 0.0));
+            scatter(&mut b, &group.own.rows, &block);
         }
         b
     }
