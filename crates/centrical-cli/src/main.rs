@@ -10,6 +10,7 @@ mod help;
 mod interruption;
 mod outcome;
 mod output;
+mod pattern;
 mod printing;
 mod progress;
 #[cfg(feature = "serve")]

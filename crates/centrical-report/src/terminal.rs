@@ -38,6 +38,8 @@ pub use self::montecarlo::monte_carlo_text;
 pub use self::noise::{noise_table, noise_warnings};
 pub use self::observe::observation_text;
 pub use self::plan::plan_text;
+pub(crate) use self::screen::Part;
 pub use self::screen::{Emphasis, Line, Screen};
+pub(crate) use self::table::{Align, Table};
 pub use self::unit::unit_text;
 pub use self::watch::{states_text, watch_table};

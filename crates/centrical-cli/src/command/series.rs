@@ -10,6 +10,7 @@ use centrical_session::{Error, FailedSession, Method, SeriesRequest, SeriesSumma
 use crate::interruption::asked_to_end;
 use crate::outcome::Outcome;
 use crate::output::{print, remark};
+use crate::pattern::expanded;
 use crate::printing::Printing;
 use crate::progress;
 
@@ -20,7 +21,7 @@ use crate::progress;
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Example: centrical series examples/ta-200 --out series")]
 pub struct Arguments {
-    /// Session folders, or their experiment.toml
+    /// Session folders, or their experiment.toml; a pattern such as "2026-*/unit-?" stands for all that match
     #[arg(required = true, value_name = "SESSION")]
     sessions: Vec<PathBuf>,
     /// Folder for the store, series.parquet and series.csv, created if absent
@@ -66,9 +67,10 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
         rows_only: arguments.rows_only,
         reduced: arguments.reduced,
     };
-    let bar = progress::sessions(arguments.sessions.len(), arguments.printing.quiet);
+    let sessions = expanded(&arguments.sessions)?;
+    let bar = progress::sessions(sessions.len(), arguments.printing.quiet);
     let asked = asked_to_end();
-    let summary = calibrate_series(&arguments.sessions, &request, &|count| {
+    let summary = calibrate_series(&sessions, &request, &|count| {
         bar.inc(count as u64);
         if asked.load(Ordering::Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     })?;

@@ -108,6 +108,19 @@ fn a_series_gives_the_table_of_its_sessions_also_after_a_kill() {
     assert_eq!(said["known"], 7);
     assert!(tables("killed") == tables("whole"));
     assert_eq!(list(folder.path(), &["killed"]).len(), 8);
+    // A pattern that the shell leaves stands for the same sessions.
+    let of_pattern = series(folder.path(), &["s*".to_owned()], "pattern").output().unwrap();
+    assert_eq!(of_pattern.status.code(), Some(2));
+    assert!(tables("pattern") == tables("whole"));
+    let of_results = run(folder.path(), &["history", "add", "again", "whole/results/*.json"]);
+    assert_eq!(String::from_utf8_lossy(&of_results.stdout), "7 new, 0 known\n");
+    let of_nothing = series(folder.path(), &["t*".to_owned()], "nothing").output().unwrap();
+    let said = String::from_utf8_lossy(&of_nothing.stderr).into_owned();
+    assert_eq!(
+        (of_nothing.status.code(), said.contains("t*: found no path of this pattern")),
+        (Some(2), true),
+        "{said}"
+    );
 }
 
 /// A session that failed is listed as failed until it succeeds, with its last message alone, and does not count as a calibration.

@@ -158,6 +158,15 @@ fn pages_name_every_calibration_and_no_name_becomes_markup() {
     let unit = page(folder, "unit-0003-");
     assert!(unit.contains("serial 0003") && unit.contains("DRIFTS") && unit.matches("<svg").count() > 40);
     assert!(unit.contains("found 4 acceptable sessions, expected 20 for the limits"));
+    assert!(
+        !unit.contains("<pre") && unit.matches("<table class=\"sortable\">").count() == 3,
+        "tables that can be sorted"
+    );
+    // The units of the model and those of the station, each with its page but the one that has come once.
+    for of_all in [page(folder, "model-"), page(folder, "station-")] {
+        assert_eq!(of_all.matches("<a href=\"unit-").count(), UNITS);
+    }
+    assert!(page(folder, "model-").contains("<td>DRIFTS: df_1</td>"));
     // Every link of every page leads to a page.
     for entry in fs::read_dir(folder.join("pages")).unwrap() {
         for link in fs::read_to_string(entry.unwrap().path()).unwrap().split("href=\"").skip(1) {
@@ -193,7 +202,8 @@ fn pages_show_what_the_commands_say() {
     for p in parameters.iter().filter(|p| !p["capability"].is_null()) {
         let [cp, cpk] = ["cp", "cpk"].map(|key| format!("{:.2}", p["capability"][key].as_f64().unwrap()));
         let name = p["name"].as_str().unwrap();
-        let line = model.lines().find(|line| line.trim_start().starts_with(&format!("{name} ")) && line.contains(&cpk));
+        let head = format!("<tr><th scope=\"row\">{name}</th>");
+        let line = model.lines().find(|line| line.starts_with(&head) && line.contains(&cpk));
         assert!(line.is_some_and(|line| line.contains(&cp)), "{name} {cp} {cpk}");
     }
     let least = parameters.iter().filter_map(|p| p["capability"]["cpk"].as_f64()).fold(f64::INFINITY, f64::min);

@@ -7,6 +7,7 @@ mod index;
 mod model;
 mod station;
 mod unit;
+mod units;
 
 pub use self::charts::StoreCharts;
 pub use self::frame::PageKind;
@@ -14,3 +15,4 @@ pub use self::index::{IndexedModel, IndexedStation, history_index};
 pub use self::model::history_model_page;
 pub use self::station::history_station_page;
 pub use self::unit::{history_unit_page, no_unit_history_page};
+pub use self::units::ListedUnit;

@@ -5,6 +5,7 @@ use std::fmt::Write;
 use centrical_session::{CalibrationResult, ComparisonReport};
 
 use super::live::{languages, served};
+use super::screen::shown;
 use crate::figure::comparison_plot;
 use crate::language::Language;
 use crate::plot::Escaped;
@@ -85,18 +86,13 @@ pub fn compared_page(report: &ComparisonReport, language: Language) -> String {
     let (class, verdict) = if report.agree { ("good", words.agree) } else { ("bad", words.disagree) };
     let mut body = format!(
         "<header><p class=\"kind\">{}</p><h1 class=\"{class}\">{verdict}</h1><p><a href=\"/?lang={}\">{}</a></p></header>\n\
-         <figure>{}</figure>\n<pre class=\"text\" lang=\"en\">",
+         <figure>{}</figure>\n<div lang=\"en\">",
         words.differences,
         language.code(),
         words.results,
         comparison_plot(report)
     );
-    for line in comparison_text(report).text(WIDTH, usize::MAX).lines() {
-        let _ = writeln!(body, "{}", Escaped(line));
-    }
-    body.push_str("</pre>\n");
+    shown(&mut body, &comparison_text(report));
+    body.push_str("</div>\n");
     served(verdict, &body, false, language)
 }
-
-/// Characters in a line.
-const WIDTH: usize = 140;

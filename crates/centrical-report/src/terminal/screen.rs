@@ -46,10 +46,14 @@ pub struct Screen {
     closing: Option<(Emphasis, String, String)>,
 }
 
+/// A part of what a command shows.
 #[derive(Debug, Clone)]
-enum Part {
+pub(crate) enum Part {
+    /// An empty line.
     Gap,
+    /// A sentence: its first line begins after `first` blanks, others after `further`.
     Words { mark: Option<(Emphasis, String)>, first: usize, further: usize, words: String },
+    /// A table.
     Table(Table),
 }
 
@@ -101,6 +105,11 @@ impl Screen {
     pub fn add(&mut self, other: Self) {
         self.parts.extend(other.parts);
         self.closing = other.closing.or(self.closing.take());
+    }
+
+    /// The parts from top to bottom, without the last line.
+    pub(crate) fn parts(&self) -> &[Part] {
+        &self.parts
     }
 
     /// A last line, for a text that is longer than a screen.

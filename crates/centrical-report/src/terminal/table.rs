@@ -1,5 +1,7 @@
 //! Tables in lines: columns as wide as their cells, folded where a line ends.
 
+use std::fmt::{self, Display, Formatter};
+
 use super::wrap::wrapped;
 
 /// Blanks before a row, and between two columns.
@@ -10,7 +12,7 @@ const WORDS: usize = 24;
 
 /// How the cells of a column stand.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Align {
+pub(crate) enum Align {
     /// Names and units.
     Left,
     /// Numbers.
@@ -21,7 +23,7 @@ pub(super) enum Align {
 
 /// One entry: what stands before the place at which a column is aligned, and what stands after it.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
-pub(super) struct Cell(String, String);
+pub(crate) struct Cell(String, String);
 
 impl<T: Into<String>> From<T> for Cell {
     fn from(text: T) -> Self {
@@ -40,9 +42,15 @@ impl Cell {
     }
 }
 
+impl Display for Cell {
+    fn fmt(&self, f: &mut Formatter) -> fmt::Result {
+        write!(f, "{}{}", self.0, self.1)
+    }
+}
+
 /// Named columns; the first ones name the row.
 #[derive(Debug, Clone)]
-pub(super) struct Table {
+pub(crate) struct Table {
     names: usize,
     columns: Vec<(String, Align)>,
     rows: Vec<Vec<Cell>>,
@@ -64,6 +72,17 @@ impl Table {
         let mut cells: Vec<Cell> = cells.into_iter().collect();
         cells.resize(self.columns.len(), Cell::default());
         self.rows.push(cells);
+    }
+
+    /// The columns with entries: place, title, and how their cells stand.
+    pub fn columns(&self) -> impl Iterator<Item = (usize, &str, Align)> {
+        let has_entries = |j: &usize| self.rows.iter().any(|row| !row[*j].is_empty());
+        (0..self.columns.len()).filter(has_entries).map(|j| (j, self.columns[j].0.as_str(), self.columns[j].1))
+    }
+
+    /// The rows: a cell for each column, those without entries too.
+    pub fn rows(&self) -> &[Vec<Cell>] {
+        &self.rows
     }
 
     /// The rows in lines of `width` characters. Columns that do not fit follow below, beside the names of their rows.

@@ -59,7 +59,7 @@ impl Store {
     /// The files that writers replace or remove.
     pub(crate) fn replaced(&self) -> Result<Vec<PathBuf>, Error> {
         let rows = if self.rows_folder().is_dir() { self.files_of_rows()? } else { Vec::new() };
-        Ok(rows.into_iter().chain([self.lock_file()]).collect())
+        Ok(rows.into_iter().chain(self.left_copies()?).chain([self.lock_file()]).collect())
     }
 
     /// The folder.
@@ -90,29 +90,24 @@ impl Store {
     /// # Errors
     /// [`Error`] if the folder cannot be read.
     pub fn parts(&self) -> Result<Vec<PathBuf>, Error> {
-        self.files_ending("parquet")
+        Ok(ending(self.files_of_rows()?, "parquet"))
     }
 
     /// Temporary files that a process left: only a writer with the lock may ask.
     pub(super) fn orphans(&self) -> Result<Vec<PathBuf>, Error> {
-        self.files_ending("tmp")
+        Ok(ending(self.files_of_rows()?, "tmp").into_iter().chain(self.left_copies()?).collect())
     }
 
-    fn files_ending(&self, end: &str) -> Result<Vec<PathBuf>, Error> {
-        let mut files = self.files_of_rows()?;
-        files.retain(|file| file.extension().is_some_and(|e| e == end));
-        Ok(files)
+    /// Copies of results that a process left before they were whole.
+    fn left_copies(&self) -> Result<Vec<PathBuf>, Error> {
+        if !self.keeps_results() {
+            return Ok(Vec::new());
+        }
+        Ok(ending(files_of(&self.results_folder())?, "tmp"))
     }
 
     fn files_of_rows(&self) -> Result<Vec<PathBuf>, Error> {
-        let folder = self.rows_folder();
-        let failed = |error| Error::reading(&folder, error, "the rows of a store");
-        let mut files = Vec::new();
-        for entry in fs::read_dir(&folder).map_err(failed)? {
-            files.push(entry.map_err(failed)?.path());
-        }
-        files.sort();
-        Ok(files)
+        files_of(&self.rows_folder())
     }
 
     fn lock_file(&self) -> PathBuf {
@@ -127,4 +122,20 @@ impl Store {
         file.lock().map_err(failed)?;
         Ok(Lock { _file: file })
     }
+}
+
+/// The files of a folder, by name.
+fn files_of(folder: &Path) -> Result<Vec<PathBuf>, Error> {
+    let failed = |error| Error::reading(folder, error, "a folder of a store");
+    let mut files = Vec::new();
+    for entry in fs::read_dir(folder).map_err(failed)? {
+        files.push(entry.map_err(failed)?.path());
+    }
+    files.sort();
+    Ok(files)
+}
+
+fn ending(mut files: Vec<PathBuf>, end: &str) -> Vec<PathBuf> {
+    files.retain(|file| file.extension().is_some_and(|e| e == end));
+    files
 }

@@ -110,9 +110,12 @@ fn small_parts_are_merged_and_a_kill_in_between_shows_nothing_twice() {
         fs::copy(entry.path(), folder.path().join("rows").join(entry.file_name())).unwrap();
     }
     fs::write(folder.path().join("rows/x.parquet.0123456789.tmp"), "PAR1").unwrap();
+    fs::create_dir_all(folder.path().join("results")).unwrap();
+    fs::write(folder.path().join("results/x.json.0123456789.tmp"), "{").unwrap();
     assert_eq!(all(&store, Depth::Whole), (0..32).map(|n| row(n, 2)).collect::<Vec<_>>());
     store.add(vec![row(5, 2)]).unwrap();
-    assert_eq!(parts(folder.path()), 1, "the next writer removes what is left");
+    let left = fs::read_dir(folder.path().join("results")).unwrap().count();
+    assert_eq!((parts(folder.path()), left), (1, 0), "the next writer removes what is left");
     assert_eq!(all(&store, Depth::Whole).len(), 32);
 }
 

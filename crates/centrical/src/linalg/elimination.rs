@@ -89,7 +89,10 @@ impl Elimination {
             let followed = b.select_rows(&group.own.rows[..q.ncols()]);
             let mut block = DMatrix::zeros(q.nrows(), b.ncols());
             // Column by column: a product of two matrices has other last digits on another processor.
-            block.column_iter_mut().zip(followed.column_iter()).for_each(|(mut column, v)| column.gemv(1.0, &q, &v, 0.0));
+            block
+                .column_iter_mut()
+                .zip(followed.column_iter())
+                .for_each(|(mut column, v)| column.gemv(1.0, &q, &v, 0.0));
             scatter(&mut b, &group.own.rows, &block);
         }
         b

@@ -6,6 +6,7 @@ use centrical_session::{AddedReport, Error, add_results};
 
 use crate::outcome::Outcome;
 use crate::output::print;
+use crate::pattern::expanded;
 use crate::progress;
 
 /// Add results to a store, which is made if it is not there. Results that it has are left as they are.
@@ -14,7 +15,7 @@ use crate::progress;
 pub struct Arguments {
     /// Folder of the store
     store: PathBuf,
-    /// Results, or folders: every result.json in them and below
+    /// Results, or folders: every result.json in them and below; a pattern such as "results/*.json" stands for all that match
     #[arg(required = true, value_name = "RESULT")]
     results: Vec<PathBuf>,
     /// Keep the rows alone, about 11 kB each, without copies of result.json
@@ -31,7 +32,8 @@ pub struct Arguments {
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let bar = progress::results(arguments.quiet);
-    let added = add_results(&arguments.store, &arguments.results, arguments.rows_only, &progress::counting(&bar))?;
+    let added =
+        add_results(&arguments.store, &expanded(&arguments.results)?, arguments.rows_only, &progress::counting(&bar))?;
     bar.finish_and_clear();
     match (arguments.json, arguments.quiet) {
         (true, _) => print(&AddedReport::of(added.new, added.known).to_json()?)?,

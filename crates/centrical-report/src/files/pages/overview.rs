@@ -4,15 +4,16 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use centrical_session::{
-    Calibrated, ChartLimits, ChartRequest, ComparedUnits, Depth, Error, HistoryList, OnProgress, ParameterLimits,
-    RuleSet, Selection, UnitsHistoryReport, UnitsHistoryRequest, advance, by_unit, chart, list_store, read_batches,
-    read_calibrations, read_limits, station_history, unit_means, units_history,
+    Calibrated, ChartLimits, ChartRequest, ComparedUnits, Depth, Error, HistoryLine, HistoryList, OnProgress,
+    ParameterLimits, RuleSet, Selection, UnitsHistoryReport, UnitsHistoryRequest, advance, by_unit, chart, list_store,
+    read_batches, read_calibrations, read_limits, station_history, unit_means, units_history,
 };
 use rayon::prelude::*;
 
 use super::request::PagesRequest;
 use crate::render::{
-    IndexedModel, IndexedStation, PageKind, StoreCharts, history_index, history_model_page, history_station_page,
+    IndexedModel, IndexedStation, ListedUnit, PageKind, StoreCharts, history_index, history_model_page,
+    history_station_page,
 };
 
 /// Sessions that a control chart shows: the last ones.
@@ -47,11 +48,12 @@ impl Overview {
         let batches = request.batches.as_deref().map(read_batches).transpose()?;
         let asked = UnitsHistoryRequest { limits: limits.unwrap_or_default(), batches: batches.unwrap_or_default() };
         let mut pages = BTreeMap::new();
-        let stations = stations(&calibrations, request, &mut pages);
-        advance(progress, 0)?;
-        let models = models(calibrations, &asked, request, &mut pages);
-        advance(progress, 0)?;
         let units = units(&list);
+        let listed = Listed { list: &list, pages: &units };
+        let stations = stations(&calibrations, listed, request, &mut pages);
+        advance(progress, 0)?;
+        let models = models(calibrations, listed, &asked, request, &mut pages);
+        advance(progress, 0)?;
         let index = history_index(&list, &models, &stations, |file| units.contains_key(file));
         Ok(Self { limits: asked.limits, index, pages, units })
     }
@@ -67,8 +69,24 @@ fn units(list: &HistoryList) -> BTreeMap<String, BTreeSet<String>> {
     units.map(|((model, serial), keys)| (PageKind::Unit.file(&[model, serial]), keys)).collect()
 }
 
+/// The list of a store, and the units that have a page by its file.
+#[derive(Clone, Copy)]
+struct Listed<'l> {
+    list: &'l HistoryList,
+    pages: &'l BTreeMap<String, BTreeSet<String>>,
+}
+
+impl Listed<'_> {
+    /// The units of the calibrations for which `is_of` holds.
+    fn units(self, is_of: impl Fn(&HistoryLine) -> bool) -> Vec<ListedUnit> {
+        let lines = self.list.calibrations.iter().filter(|line| is_of(line));
+        ListedUnit::all(lines, |file| self.pages.contains_key(file))
+    }
+}
+
 fn stations(
     calibrations: &[Calibrated],
+    listed: Listed,
     request: &PagesRequest,
     pages: &mut BTreeMap<String, String>,
 ) -> Vec<IndexedStation> {
@@ -81,7 +99,8 @@ fn stations(
         let Some(report) = station_history(calibrations) else { continue };
         let names: Vec<&str> = report.parameters.iter().map(|p| p.name.as_str()).collect();
         let charts = charts(calibrations, &names, request.accepted);
-        pages.insert(PageKind::Station.file(&[&report.station]), history_station_page(&report, &charts));
+        let units = listed.units(|line| line.station == report.station);
+        pages.insert(PageKind::Station.file(&[&report.station]), history_station_page(&report, &units, &charts));
         indexed.push(IndexedStation { has_signals: charts.has_signals(), report });
     }
     indexed
@@ -89,6 +108,7 @@ fn stations(
 
 fn models(
     calibrations: Vec<Calibrated>,
+    listed: Listed,
     asked: &UnitsHistoryRequest,
     request: &PagesRequest,
     pages: &mut BTreeMap<String, String>,
@@ -106,7 +126,9 @@ fn models(
         all.sort_by(|a, b| a.date.cmp(&b.date).then_with(|| a.source.cmp(&b.source)));
         let names: Vec<&str> = report.parameters.iter().map(|p| p.name.as_str()).collect();
         let charts = charts(&all, &names, request.accepted);
-        let page = history_model_page(&report, &distributions(units, &report, asked), &asked.limits, &charts);
+        let values = distributions(units, &report, asked);
+        let units = listed.units(|line| line.unit_model == report.unit_model);
+        let page = history_model_page(&report, &values, &units, &asked.limits, &charts);
         pages.insert(PageKind::Model.file(&[&report.unit_model]), page);
         indexed.push(IndexedModel { has_signals: charts.has_signals(), report });
     }

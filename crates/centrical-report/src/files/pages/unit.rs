@@ -85,4 +85,4 @@ impl UnitPages {
 }
 
 /// Counts up when a page of the same calibrations looks otherwise.
-const FORM: u32 = 2;
+const FORM: u32 = 3;

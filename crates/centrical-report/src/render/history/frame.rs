@@ -1,11 +1,10 @@
-//! What all pages of a store have: names of files, frame, texts of the terminal, drawings.
+//! What all pages of a store have: names of files, frame, drawings.
 
 use std::fmt::Write;
 
 use centrical_session::sha256;
 
 use crate::plot::{Escaped, Plot, STYLE as PLOT_STYLE};
-use crate::terminal::Screen;
 
 const STYLE: &str = include_str!("../html/style.css");
 const LIST_STYLE: &str = include_str!("../html/list.css");
@@ -50,18 +49,6 @@ pub(super) fn opening(kind: &str, title: &str) -> String {
         Escaped(title)
     )
 }
-
-/// What a command prints.
-pub(super) fn text(body: &mut String, screen: &Screen) {
-    body.push_str("<pre class=\"text\">");
-    for line in screen.text(WIDTH, usize::MAX).lines() {
-        let _ = writeln!(body, "{}", Escaped(line));
-    }
-    body.push_str("</pre>\n");
-}
-
-/// Characters in a line: what a laboratory's screen shows beside its margins.
-const WIDTH: usize = 150;
 
 /// Drawings side by side.
 pub(super) fn panels(body: &mut String, plots: impl IntoIterator<Item = Plot>) {

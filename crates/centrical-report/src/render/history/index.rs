@@ -44,7 +44,8 @@ pub fn history_index(
     stations_table(&mut body, stations);
     body.push_str(
         "<h2>Calibrations</h2>\n\
-         <form class=\"filters\" role=\"search\"><label>Serial, model or station <input id=\"words\" type=\"search\"></label>\
+         <form class=\"filters\" role=\"search\"><label>Serial <input id=\"serial\" type=\"search\"></label>\
+         <label>Model or station <input id=\"words\" type=\"search\"></label>\
          <label>from <input id=\"from\" type=\"date\"></label><label>to <input id=\"to\" type=\"date\"></label>\
          <label>Verdict <select id=\"verdict\"><option value=\"\">all</option><option>acceptable</option><option>not acceptable</option>\
          <option>failed</option></select></label><output id=\"count\"></output></form>\n\

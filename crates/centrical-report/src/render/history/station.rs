@@ -3,14 +3,17 @@
 use centrical_session::StationHistoryReport;
 
 use super::charts::StoreCharts;
-use super::frame::{opening, page, text};
+use super::frame::{opening, page};
+use super::units::{ListedUnit, units_table};
+use crate::render::screen::shown;
 use crate::terminal::station_history_text;
 
-/// The page of a station.
-pub fn history_station_page(report: &StationHistoryReport, charts: &StoreCharts) -> String {
+/// The page of a station and of the units that it has calibrated.
+pub fn history_station_page(report: &StationHistoryReport, units: &[ListedUnit], charts: &StoreCharts) -> String {
     let name = if report.station.is_empty() { "without a name" } else { &report.station };
     let mut body = opening("Station", name);
-    text(&mut body, &station_history_text(report));
+    shown(&mut body, &station_history_text(report));
+    units_table(&mut body, units, None);
     charts.write(&mut body);
     page(name, &body)
 }

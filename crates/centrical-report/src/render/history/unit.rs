@@ -3,15 +3,16 @@
 use centrical_session::{ParameterLimits, UnitHistoryReport, unit_name};
 
 use super::charts::StoreCharts;
-use super::frame::{opening, page, panels, text};
+use super::frame::{opening, page, panels};
 use crate::figure::unit_history_plots;
+use crate::render::screen::shown;
 use crate::terminal::unit_history_text;
 
 /// The page of a unit with a history; with `limits` of its parameters in the drawings.
 pub fn history_unit_page(report: &UnitHistoryReport, limits: &ParameterLimits, charts: &StoreCharts) -> String {
     let title = unit_name(&report.unit_model, &report.unit_serial);
     let mut body = opening("Unit", &title);
-    text(&mut body, &unit_history_text(report));
+    shown(&mut body, &unit_history_text(report));
     body.push_str("<h2>Parameters over time</h2>\n");
     panels(&mut body, unit_history_plots(report, limits).into_iter().map(|(_, plot)| plot.as_panel()));
     charts.write(&mut body);

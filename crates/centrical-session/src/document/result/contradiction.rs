@@ -6,6 +6,7 @@ use centrical::{ErrorModel, Term};
 use centrical_table::LARGEST_NUMBER;
 
 use super::schema::{CalibrationResult, ConvergenceSummary, ObservabilitySummary, ParameterEstimate};
+use crate::quantity::Quantity;
 
 /// Units of raw output.
 const RAW_UNITS: [&str; 2] = ["counts", "V"];
@@ -19,7 +20,8 @@ type Contradiction = (String, String);
 /// The first contradiction.
 pub(super) fn contradiction(result: &CalibrationResult) -> Option<Contradiction> {
     let n = result.parameters.len();
-    of_output(result)
+    of_gravity(result)
+        .or_else(|| of_output(result))
         .or_else(|| of_parameters(result))
         .or_else(|| of_terms(result))
         .or_else(|| of_observability(&result.observability, n))
@@ -58,6 +60,12 @@ fn of_checks(result: &CalibrationResult) -> Option<Contradiction> {
         let (name, number) = impossible()?;
         Some((format!("a probability of {number} in {name}"), "0 to 1".to_owned()))
     })
+}
+
+/// Forces in g, and what gravity shows, are those of a place on Earth.
+fn of_gravity(result: &CalibrationResult) -> Option<Contradiction> {
+    let not = Quantity::Number(result.model.gravity).gravity().err()?;
+    Some((format!("model.gravity = {}", not.found), not.expected))
 }
 
 /// Raw output has a unit that sessions know, and a scale.

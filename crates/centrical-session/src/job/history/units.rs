@@ -27,7 +27,7 @@ pub struct UnitsHistoryRequest {
     pub batches: BTreeMap<String, String>,
 }
 
-/// Family-wise level of what is called outlying, drifting or different.
+/// Family-wise level: of batches that differ, and of units that are outlying together with those that drift or scatter, which share it.
 const FAMILY: f64 = 0.05;
 
 /// Seed of the laws that are drawn.
@@ -56,8 +56,10 @@ pub fn units_history(compared: &ComparedUnits, request: &UnitsHistoryRequest) ->
     let by_parameter = by_parameter(&stations, &lasts, &names, &all);
     let (tested, few): (Vec<&AtStation>, Vec<&AtStation>) =
         stations.iter().partition(|units| units.len() >= FEWEST_UNITS);
-    let outlying = outlying(&tested, &lasts, &by_parameter);
-    let findings = over_time(by_parameter);
+    let kinds = usize::from(!tested.is_empty()) + usize::from(by_parameter.iter().any(|of| !of.findings.is_empty()));
+    let level = FAMILY / kinds.max(1) as f64;
+    let outlying = outlying(&tested, &lasts, &by_parameter, level);
+    let findings = over_time(by_parameter, level);
     let batches_differ = parameters.iter().any(|p| p.batches_differ);
     Some(UnitsHistoryReport {
         schema: UNITS_HISTORY_SCHEMA,
@@ -188,8 +190,13 @@ fn by_parameter(
     names.par_iter().map(of_parameter).collect()
 }
 
-/// Units whose robust distance no sound unit of their station would have.
-fn outlying(stations: &[&AtStation], lasts: &[&Calibrated], by_parameter: &[OfParameter]) -> Vec<OutlyingUnit> {
+/// Units whose robust distance sound units of their station would have with a probability below `level`.
+fn outlying(
+    stations: &[&AtStation],
+    lasts: &[&Calibrated],
+    by_parameter: &[OfParameter],
+    level: f64,
+) -> Vec<OutlyingUnit> {
     let names: Vec<&str> = by_parameter.iter().filter(|of| of.is_known).map(|of| of.name.as_str()).collect();
     if names.is_empty() {
         return Vec::new();
@@ -217,7 +224,7 @@ fn outlying(stations: &[&AtStation], lasts: &[&Calibrated], by_parameter: &[OfPa
                 most: scores,
             }
         });
-        found.filter(|unit| unit.probability < FAMILY).collect()
+        found.filter(|unit| unit.probability < level).collect()
     };
     let mut found: Vec<OutlyingUnit> = stations.iter().flat_map(at_station).collect();
     found.sort_by(|a, b| b.distance.total_cmp(&a.distance));
@@ -249,14 +256,14 @@ fn findings(numbers: &[usize], series: &[Series], lasts: &[&Calibrated], name: &
     findings.flatten().collect()
 }
 
-/// Units that drift, or scatter more than the others, in any parameter.
-fn over_time(by_parameter: Vec<OfParameter>) -> Vec<UnitFinding> {
+/// Units that drift, or scatter more than the others, in any parameter, at a family-wise `level`.
+fn over_time(by_parameter: Vec<OfParameter>, level: f64) -> Vec<UnitFinding> {
     let findings: Vec<UnitFinding> = by_parameter.into_iter().flat_map(|of| of.findings).collect();
     let chances: Vec<f64> = findings.iter().map(|finding| finding.probability).collect();
     let family_wise = family_wise(&chances);
     let with_family =
         findings.into_iter().zip(family_wise).map(|(finding, probability)| UnitFinding { probability, ..finding });
-    with_family.filter(|finding| finding.probability < FAMILY).collect()
+    with_family.filter(|finding| finding.probability < level).collect()
 }
 
 fn summary(batch: &str, values: &[f64]) -> BatchSummary {

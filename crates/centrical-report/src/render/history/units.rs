@@ -1,0 +1,104 @@
+//! The units of a model or of a station, each with a link to its page.
+
+use std::collections::BTreeMap;
+use std::fmt::Write;
+
+use centrical_session::{HistoryLine, UnitFindingKind, UnitsHistoryReport};
+
+use super::frame::PageKind;
+use crate::plot::Escaped;
+
+/// A unit in a list.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ListedUnit {
+    model: String,
+    serial: String,
+    calibrations: usize,
+    first: String,
+    last: String,
+    is_last_acceptable: bool,
+    /// Its page, if it has one.
+    page: Option<String>,
+}
+
+impl ListedUnit {
+    /// The units of `lines`, which stand in the order of unit and day; `has_page` says by its file whether a unit has a page.
+    pub fn all<'l>(lines: impl Iterator<Item = &'l HistoryLine>, has_page: impl Fn(&str) -> bool) -> Vec<Self> {
+        let mut units: Vec<Self> = Vec::new();
+        for line in lines {
+            let Some(is_acceptable) = line.acceptable else { continue };
+            match units.last_mut() {
+                Some(unit) if unit.model == line.unit_model && unit.serial == line.unit_serial => {
+                    unit.calibrations += 1;
+                    unit.last.clone_from(&line.date);
+                    unit.is_last_acceptable = is_acceptable;
+                }
+                _ => units.push(Self {
+                    model: line.unit_model.clone(),
+                    serial: line.unit_serial.clone(),
+                    calibrations: 1,
+                    first: line.date.clone(),
+                    last: line.date.clone(),
+                    is_last_acceptable: is_acceptable,
+                    page: Some(PageKind::Unit.file(&[&line.unit_model, &line.unit_serial]))
+                        .filter(|file| has_page(file)),
+                }),
+            }
+        }
+        units
+    }
+
+    /// Serial number, with a link to the page of the unit.
+    fn linked(&self) -> String {
+        let serial = Escaped(&self.serial);
+        self.page.as_ref().map_or_else(|| serial.to_string(), |file| format!("<a href=\"{file}\">{serial}</a>"))
+    }
+}
+
+/// A table of `units`, with what `report` finds of each where it is of one model.
+pub(super) fn units_table(body: &mut String, units: &[ListedUnit], report: Option<&UnitsHistoryReport>) {
+    let found = report.map(findings);
+    let (kind, last) = if report.is_some() { ("", "found") } else { ("<th scope=\"col\">model</th>", "") };
+    let _ = writeln!(
+        body,
+        "<h2>Its units</h2>\n<div class=\"scroll\"><table class=\"sortable\"><thead><tr><th scope=\"col\">serial</th>{kind}\
+         <th scope=\"col\" class=\"number\">calibrations</th><th scope=\"col\">first</th><th scope=\"col\">last</th>\
+         <th scope=\"col\">last verdict</th><th scope=\"col\">{last}</th></tr></thead><tbody>"
+    );
+    for unit in units {
+        let model = if report.is_some() { String::new() } else { format!("<td>{}</td>", Escaped(&unit.model)) };
+        let (class, verdict) = if unit.is_last_acceptable { ("good", "acceptable") } else { ("bad", "not acceptable") };
+        let found = found.as_ref().and_then(|found| found.get(unit.serial.as_str())).map_or("", String::as_str);
+        let _ = writeln!(
+            body,
+            "<tr><th scope=\"row\">{}</th>{model}<td class=\"number\">{}</td><td>{}</td><td>{}</td><td class=\"{class}\">{verdict}</td><td>{}</td></tr>",
+            unit.linked(),
+            unit.calibrations,
+            Escaped(&unit.first),
+            Escaped(&unit.last),
+            Escaped(found)
+        );
+    }
+    body.push_str("</tbody></table></div>\n");
+}
+
+/// What was found of units, by their serial numbers.
+fn findings(report: &UnitsHistoryReport) -> BTreeMap<&str, String> {
+    let outlying = report.outlying.iter().map(|unit| (unit.unit_serial.as_str(), "OUTLYING".to_owned()));
+    let others = report.findings.iter().map(|finding| {
+        let does = match finding.kind {
+            UnitFindingKind::Drifts => "DRIFTS",
+            UnitFindingKind::Scatters => "SCATTERS",
+        };
+        (finding.unit_serial.as_str(), format!("{does}: {}", finding.parameter))
+    });
+    let mut found: BTreeMap<&str, String> = BTreeMap::new();
+    for (serial, words) in outlying.chain(others) {
+        let all = found.entry(serial).or_default();
+        if !all.is_empty() {
+            all.push_str(", ");
+        }
+        all.push_str(&words);
+    }
+    found
+}
