@@ -13,6 +13,8 @@ EDITS = {
     "a covariance of one side": lambda r: r["plateaus"][0]["covariance"][1].__setitem__(0, 1e18),
     "steps of no length": lambda r: r.update(records=[dict(mounting=1, start=0, step=5e-324, low=[[0]] * 3, high=[[1]] * 3)]),
     "a probability of 2": lambda r: r["validity"].update(probability=2),
+    "ten times gravity": lambda r: r["model"].update(gravity=98.1523),
+    "gravity below zero": lambda r: r["model"].update(gravity=-9.81523),
     "a parameter twice": lambda r: r["parameters"].append(r["parameters"][0]),
     "a covariance without a row": lambda r: r["covariance"].pop(),
 }
