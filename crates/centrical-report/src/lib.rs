@@ -18,7 +18,7 @@ mod render;
 mod terminal;
 
 pub use document::{
-    Align, Attachment, Block, Column, Document, Fact, Layer, Margins, Opening, Row, Section, Table, TableKind, Tone,
+    Align, Attachment, Block, Column, Document, Layer, Margins, Opening, Row, Section, Table, TableKind, Tone,
     certificate, report,
 };
 pub use evaluation::{Judged, UnitStatement, UnitVerdict};
@@ -28,7 +28,7 @@ pub use files::{
     write_history_pages, write_history_plot, write_noise, write_plots,
 };
 pub use language::Language;
-pub use number::{counted, with_uncertainty};
+pub use number::counted;
 pub use render::{
     LIVE_SCRIPT, LIVE_STYLE, ListedResult, compared_page, html, live_page, live_panel, pdf, results_page,
 };

@@ -27,19 +27,17 @@ mod truth;
 mod watch;
 mod words;
 
-pub use self::added::{ADDED_SCHEMA, AddedReport};
+pub use self::added::AddedReport;
 pub(crate) use self::assessment::Assessed;
 pub use self::assessment::{
-    ASSESSMENT_SCHEMA, AssessedFit, AssessedParameter, AssessedPlateau, AssessmentReport, CompensatedUncertainty,
-    ImprovementSummary, LeftOutPlateau, WithoutOutliers,
+    AssessedFit, AssessedParameter, AssessedPlateau, AssessmentReport, CompensatedUncertainty, ImprovementSummary,
+    LeftOutPlateau, WithoutOutliers,
 };
-pub use self::comparison::{
-    COMPARISON_SCHEMA, ComparedResultSummary, ComparisonReport, DifferenceSummary, PairComparison,
-};
+pub use self::comparison::{ComparedResultSummary, ComparisonReport, DifferenceSummary, PairComparison};
 pub(crate) use self::compensation::CompensatedFiles;
-pub use self::compensation::{COMPENSATION_SCHEMA, CompensationReport, FirstReading, ReadingsBeyond};
-pub use self::documents::{DOCUMENTS_SCHEMA, DocumentKind, DocumentsReport, ObjectionName, WrittenDocument};
-pub use self::draft::{DRAFT_SCHEMA, DraftReport, LineToFillIn};
+pub use self::compensation::{CompensationReport, FirstReading, ReadingsBeyond};
+pub use self::documents::{DocumentKind, DocumentsReport, ObjectionName, WrittenDocument};
+pub use self::draft::{DraftReport, LineToFillIn};
 pub(crate) use self::history::FAMILY;
 pub use self::history::{
     BatchSummary, BatchWithoutUnit, BeyondLimit, CHART_SCHEMA, CapabilitySummary, ChartReport, ChartSignal,
@@ -47,15 +45,15 @@ pub use self::history::{
     SamenessSummary, StationHistoryReport, StationParameter, UNIT_HISTORY_SCHEMA, UNITS_HISTORY_SCHEMA, UnitFinding,
     UnitFindingKind, UnitHistoryReport, UnitParameter, UnitsHistoryReport, UnitsParameter, UntestedStation,
 };
-pub use self::history_list::{Doubt, DoubtKind, HISTORY_LIST_SCHEMA, HistoryLine, HistoryList};
+pub use self::history_list::{Doubt, DoubtKind, HistoryLine, HistoryList};
 pub(crate) use self::json::line as json_line;
-pub use self::models::{CandidateSummary, MODELS_SCHEMA, ModelsReport, NestedTestSummary, TermSupport};
+pub use self::models::{CandidateSummary, ModelsReport, NestedTestSummary, TermSupport};
 pub(crate) use self::montecarlo::Repeated;
-pub use self::montecarlo::{MONTE_CARLO_SCHEMA, MonteCarloReport, RepeatedFit, RepeatedParameter, SquareSummary};
-pub use self::noise::{NOISE_SCHEMA, NoiseAnalysis, ReadingNoise};
+pub use self::montecarlo::{MonteCarloReport, RepeatedFit, RepeatedParameter, SquareSummary};
+pub use self::noise::{NoiseAnalysis, ReadingNoise};
 pub use self::observability::{
-    CombinationReport, ConditionReport, GroupReport, LostCombination, OBSERVABILITY_SCHEMA, ObservabilityReport,
-    ObservedParameter, PairReport, RemedyReport, SightReport, StepReport, Subject,
+    CombinationReport, ConditionReport, GroupReport, LostCombination, ObservabilityReport, ObservedParameter,
+    PairReport, RemedyReport, SightReport, StepReport, Subject,
 };
 pub(crate) use self::plan::SCHEMA as PLAN_SCHEMA;
 pub use self::plan::{
@@ -64,7 +62,7 @@ pub use self::plan::{
 };
 pub use self::prediction::{PredictedParameter, PredictionReport};
 pub(crate) use self::record_findings::RecordFindings;
-pub use self::reduction::{REDUCTION_SCHEMA, ReducedPlateauSummary, ReductionReport};
+pub use self::reduction::{ReducedPlateauSummary, ReductionReport};
 pub(crate) use self::result::Attitude;
 pub use self::result::{
     AxesName, AxesParameter, AxesSummary, BetweenRestsSummary, BudgetSource, BudgetSummary, CalibrationResult,
@@ -74,8 +72,8 @@ pub use self::result::{
     ResultObjection, RivalSize, RivalSummary, SCHEMA, SessionSummary, SpeedDifference, SpeedFinding, SpeedsSummary,
     StabilityCurve, TermSummary, ValiditySummary, unit_name,
 };
-pub use self::series::{FailedSession, SERIES_SCHEMA, SeriesSummary};
-pub use self::simulation::{SIMULATION_SCHEMA, SimulationReport};
+pub use self::series::{FailedSession, SeriesSummary};
+pub use self::simulation::SimulationReport;
 pub use self::steadiness::{
     DriftSummary, LeftOutSummary, PlateauDriftVerdict, RepeatedPlateau, SessionDriftVerdict, SessionTrend, TiltSummary,
     TiltVerdict,

@@ -22,7 +22,7 @@ mod watch;
 
 pub use self::assess::{Assessment, AssessmentRequest, assess};
 pub use self::axes::Axes;
-pub use self::calibrate::{Problem, calibrate, calibrate_reduced, calibrate_without};
+pub use self::calibrate::{calibrate, calibrate_reduced, calibrate_without};
 pub use self::compare::{ComparisonRequest, compare_results};
 pub use self::compensate::{Compensated, CompensationRequest, FirstOutside, compensate, compensate_record};
 pub use self::history::{
@@ -34,7 +34,7 @@ pub use self::history::{add_result, add_results, check_store, collect_results, l
 pub use self::init::{Draft, FillIn, InitRequest, init, time_column};
 pub use self::models::select_model;
 pub use self::montecarlo::{MonteCarloCase, MonteCarloRequest};
-pub use self::noise::{NoiseRequest, Series, noise_of, noise_of_plateau};
+pub use self::noise::{NoiseRequest, noise_of, noise_of_plateau};
 pub use self::observe::{subject, subject_of};
 pub use self::plan::{PlanRequest, USUAL_LEVELS, USUAL_TIMES, plan, read_plan, read_planning};
 pub use self::reduce::{Recorded, reduce, reduce_recorded, reduce_without_inputs};

@@ -39,13 +39,11 @@ pub use centrical_table::{
     harmless_line, refuse_inputs, write_stream, write_whole,
 };
 pub use document::{
-    ADDED_SCHEMA, ASSESSMENT_SCHEMA, AddedReport, AssessedFit, AssessedParameter, AssessedPlateau, AssessmentReport,
-    COMPARISON_SCHEMA, COMPENSATION_SCHEMA, CandidateSummary, ComparedResultSummary, ComparisonReport,
-    CompensatedUncertainty, CompensationReport, DOCUMENTS_SCHEMA, DRAFT_SCHEMA, DifferenceSummary, DocumentKind,
-    DocumentsReport, Doubt, DoubtKind, DraftReport, FirstReading, HISTORY_LIST_SCHEMA, HistoryLine, HistoryList,
-    ImprovementSummary, LeftOutPlateau, LineToFillIn, MODELS_SCHEMA, MONTE_CARLO_SCHEMA, ModelsReport,
-    MonteCarloReport, NestedTestSummary, ObjectionName, PairComparison, REDUCTION_SCHEMA, ReadingsBeyond,
-    ReducedPlateauSummary, ReductionReport, RepeatedFit, RepeatedParameter, SERIES_SCHEMA, SIMULATION_SCHEMA,
+    AddedReport, AssessedFit, AssessedParameter, AssessedPlateau, AssessmentReport, CandidateSummary,
+    ComparedResultSummary, ComparisonReport, CompensatedUncertainty, CompensationReport, DifferenceSummary,
+    DocumentKind, DocumentsReport, Doubt, DoubtKind, DraftReport, FirstReading, HistoryLine, HistoryList,
+    ImprovementSummary, LeftOutPlateau, LineToFillIn, ModelsReport, MonteCarloReport, NestedTestSummary, ObjectionName,
+    PairComparison, ReadingsBeyond, ReducedPlateauSummary, ReductionReport, RepeatedFit, RepeatedParameter,
     SeriesSummary, SimulationReport, SquareSummary, TermSupport, WithoutOutliers, WrittenDocument,
 };
 pub use document::{
@@ -53,40 +51,39 @@ pub use document::{
     ChosenRest, ChosenRests, CombinationReport, ConditionReport, ConvergenceSummary, CriterionName, DifferenceExtent,
     DriftSummary, FitSummary, FollowedSpeeds, Follows, FrontierRow, GoalReport, GroupReport, HistoryEntry,
     HistoryEstimate, InnovationSummary, LeftOutSummary, LostCombination, Method, ModelSummary, MountingPrediction,
-    MountingSummary, NOISE_SCHEMA, NextAttitudeSummary, NoiseAnalysis, OBSERVABILITY_SCHEMA, ObservabilityReport,
-    ObservabilitySummary, ObservedParameter, OutlyingPlateau, OutputSummary, PairReport, ParameterEstimate,
-    PatternSummary, PlanReport, PlannedMounting, PlannedPlateau, PlateauDriftVerdict, PlateauSummary, PositionSummary,
-    PredictedParameter, PredictionReport, PriorSummary, Program, ReadingNoise, ReasonReport, RemedyReport,
-    RepeatedPlateau, RestsOn, ResultObjection, RivalSize, RivalSummary, SCHEMA, SessionDriftVerdict, SessionSummary,
-    SessionTrend, SightReport, SpeedDifference, SpeedFinding, SpeedsSummary, StabilityCurve, StepReport, Subject,
-    TermSummary, TiltSummary, TiltVerdict, ValiditySummary, WatchState, WatchedPlateau, read_history, unit_name,
+    MountingSummary, NextAttitudeSummary, NoiseAnalysis, ObservabilityReport, ObservabilitySummary, ObservedParameter,
+    OutlyingPlateau, OutputSummary, PairReport, ParameterEstimate, PatternSummary, PlanReport, PlannedMounting,
+    PlannedPlateau, PlateauDriftVerdict, PlateauSummary, PositionSummary, PredictedParameter, PredictionReport,
+    PriorSummary, Program, ReadingNoise, ReasonReport, RemedyReport, RepeatedPlateau, RestsOn, ResultObjection,
+    RivalSize, RivalSummary, SCHEMA, SessionDriftVerdict, SessionSummary, SessionTrend, SightReport, SpeedDifference,
+    SpeedFinding, SpeedsSummary, StabilityCurve, StepReport, Subject, TermSummary, TiltSummary, TiltVerdict,
+    ValiditySummary, WatchState, WatchedPlateau, read_history, unit_name,
 };
 pub use document::{
-    BatchSummary, BatchWithoutUnit, BeyondLimit, CHART_SCHEMA, CapabilitySummary, ChartReport, ChartSignal,
-    DeviatingSession, DueDate, FailedSession, LeftOutSession, OutlyingUnit, PastSession, ReadingHistory,
-    STATION_HISTORY_SCHEMA, SamenessSummary, StationHistoryReport, StationParameter, UNIT_HISTORY_SCHEMA,
-    UNITS_HISTORY_SCHEMA, UnitFinding, UnitFindingKind, UnitHistoryReport, UnitParameter, UnitsHistoryReport,
-    UnitsParameter, UntestedStation,
+    BatchSummary, BatchWithoutUnit, BeyondLimit, CapabilitySummary, ChartReport, ChartSignal, DeviatingSession,
+    DueDate, FailedSession, LeftOutSession, OutlyingUnit, PastSession, ReadingHistory, SamenessSummary,
+    StationHistoryReport, StationParameter, UnitFinding, UnitFindingKind, UnitHistoryReport, UnitParameter,
+    UnitsHistoryReport, UnitsParameter, UntestedStation,
 };
 pub use document::{
-    GroupProgress, LIVE_SCHEMA, LiveBenefit, LiveCause, LiveLost, LivePlateau, LiveRecord, LiveReport, LiveSpeed,
-    LiveStatus, PlateauLabel, seconds_since_1970,
+    GroupProgress, LiveBenefit, LiveCause, LiveLost, LivePlateau, LiveRecord, LiveReport, LiveSpeed, LiveStatus,
+    PlateauLabel, seconds_since_1970,
 };
 pub use error::{Error, ErrorKind, NoErrorModel, Place};
 pub use experiment::{
-    ExpectedValues, Folder, KnownAttitudes, MOST_DISTANT, Measured, MountingFiles, OutputUnit, Plan, PlannedRests,
-    Planning, PlateauMean, PlateauName, PlateauTable, RecordedRests, RestSource, RestTable, Session, SpeedSource,
-    Speeds, StatedAttitudes, Turning, available_time, read_plateaus, write_plateaus,
+    Folder, KnownAttitudes, MOST_DISTANT, Measured, MountingFiles, OutputUnit, Plan, PlannedRests, Planning,
+    PlateauMean, PlateauName, PlateauTable, RecordedRests, RestSource, RestTable, Session, SpeedSource, Speeds,
+    StatedAttitudes, Turning, available_time, read_plateaus, write_plateaus,
 };
 pub use job::{
     Assessment, AssessmentRequest, Axes, ComparisonRequest, Compensated, CompensationRequest, Draft, FillIn,
-    FirstOutside, InitRequest, LiveRequest, MonteCarloCase, MonteCarloRequest, NoiseRequest, PlanRequest, Problem,
-    Recorded, Series, SeriesRequest, SettingsForm, Tumble, TumbleRequest, USUAL_LEVELS, USUAL_TIMES, Watch, WatchEnd,
-    WatchEvent, WatchProgress, WatchRequest, add_result, add_results, assess, calibrate, calibrate_reduced,
-    calibrate_series, calibrate_without, check_store, collect_results, compare_results, compensate, compensate_record,
-    init, list_store, noise_of, noise_of_plateau, plan, read_plan, read_planning, reduce, reduce_recorded,
-    reduce_without_inputs, select_model, settings_schema, simulate_session, spelling, subject, subject_of, time_column,
-    today, tumble, watch, write_reduced,
+    FirstOutside, InitRequest, LiveRequest, MonteCarloCase, MonteCarloRequest, NoiseRequest, PlanRequest, Recorded,
+    SeriesRequest, SettingsForm, Tumble, TumbleRequest, USUAL_LEVELS, USUAL_TIMES, Watch, WatchEnd, WatchEvent,
+    WatchProgress, WatchRequest, add_result, add_results, assess, calibrate, calibrate_reduced, calibrate_series,
+    calibrate_without, check_store, collect_results, compare_results, compensate, compensate_record, init, list_store,
+    noise_of, noise_of_plateau, plan, read_plan, read_planning, reduce, reduce_recorded, reduce_without_inputs,
+    select_model, settings_schema, simulate_session, spelling, subject, subject_of, time_column, today, tumble, watch,
+    write_reduced,
 };
 pub use job::{
     Calibrated, CalibratedParameter, ChartLimits, ChartRequest, ComparedUnits, NoChart, ParameterLimits, RuleSet,
@@ -104,8 +101,7 @@ pub use record::{
 };
 pub use reduced::{MountingFindings, Reduced, ReducedPlateau, Steadiness};
 pub use store::{
-    Added, Depth, Failure, ROWS_SCHEMA, Row, RowPrior, RowTable, RowTerm, Rows, Selection, SharedInfluence, Status,
-    Store, days_since_1970, sha256,
+    Added, Depth, Failure, Row, RowPrior, RowTable, RowTerm, Rows, Selection, SharedInfluence, Status, Store, sha256,
 };
 pub use truth::Truth;
 pub use units::{MICRO_G, Symbol, Unit, UnknownUnit, customary};

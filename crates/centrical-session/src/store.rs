@@ -16,6 +16,6 @@ mod writing;
 pub use self::folder::Store;
 pub use self::reading::{Rows, Selection};
 pub use self::row::{Failure, Row, RowPrior, RowTerm, SharedInfluence, Status, days_since_1970, sha256};
-pub use self::schema::{Depth, ROWS_SCHEMA};
+pub use self::schema::Depth;
 pub use self::table::RowTable;
 pub use self::writing::Added;

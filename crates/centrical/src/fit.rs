@@ -19,13 +19,13 @@
 
 mod assembly;
 mod batch;
-mod calibration;
+pub(crate) mod calibration;
 mod convergence;
 mod curvature;
-mod data;
+pub(crate) mod data;
 mod departure;
 mod design;
-mod estimates;
+pub(crate) mod estimates;
 /// The same estimates by a filter over plateaus, with the states that the order of the experiments asks for.
 pub mod filter;
 mod follower;
@@ -35,11 +35,11 @@ mod linearised;
 mod past;
 mod structure;
 
-pub use calibration::Calibration;
+pub(crate) use calibration::Calibration;
 pub use convergence::Checkpoint;
-pub use data::Data;
-pub use estimates::{Fit, Termination};
-pub use filter::Innovation;
+pub(crate) use data::Data;
+pub(crate) use estimates::{Fit, Termination};
+pub use filter::innovation::Innovation;
 pub use follower::{Arrival, Follower, Progress};
 pub use gain::Gain;
 pub use structure::Structure;

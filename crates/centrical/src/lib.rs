@@ -60,7 +60,9 @@ mod statistics;
 pub mod uncertainty;
 
 pub use centrical_compensate::Monomial;
-pub use fit::{Calibration, Checkpoint, Data, Fit, Termination};
+pub use fit::calibration::Calibration;
+pub use fit::data::Data;
+pub use fit::estimates::{Fit, Termination};
 pub use linalg::least_squares::{LeastSquares, Solution};
 pub use model::{
     ArmMotion, Centrifuge, Course, Difference, EARTH_RATE, Effect, ErrorModel, Experiment, Extension, Extra, FitError,
@@ -70,5 +72,8 @@ pub use model::{
     position, rotation, rotation_rate,
 };
 pub use nalgebra;
-pub use observability::{Combination, NullDirection, Observability, RANK_TOLERANCE, Study};
+pub use observability::combination::Combination;
+pub use observability::direction::NullDirection;
+pub use observability::rank::{Observability, RANK_TOLERANCE};
+pub use observability::study::Study;
 pub use progress::{OnProgress, Stopped, advance, unwatched};

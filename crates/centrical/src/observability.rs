@@ -6,22 +6,20 @@
 
 mod addition;
 mod attitude;
-mod combination;
+pub(crate) mod combination;
 mod condition;
 mod correlation;
-mod direction;
-mod rank;
+pub(crate) mod direction;
+pub(crate) mod rank;
 mod reason;
 mod remedy;
-mod study;
+pub(crate) mod study;
 
 pub use addition::{Addition, attitude_in_words, cube_directions};
 pub use attitude::NextAttitude;
-pub use combination::{Combination, CombinationError};
+pub use combination::CombinationError;
 pub use condition::{Condition, Need};
 pub use correlation::{CorrelatedGroup, STRONG_CORRELATION};
-pub use direction::NullDirection;
-pub use rank::{Observability, RANK_TOLERANCE};
+pub(crate) use rank::{Observability, RANK_TOLERANCE};
 pub use reason::{Cause, Reason, Sight};
 pub use remedy::{Remedy, Step};
-pub use study::Study;

@@ -51,7 +51,7 @@ pub use colour::{EXCLUDED, NoiseModel, plateau_means};
 pub use copies::{RepeatedRests, chance_of_likeness, repeated_rests};
 pub use ellipsoid::{CoarseScale, coarse_scale};
 pub use error::{ReductionError, Stretch};
-pub use locate::{ClockAgreement, ClockOffset, Located, PulseTrain, SpeedReading, SpeedTrace, locate, locate_rests};
+pub use locate::{ClockAgreement, ClockOffset, Located, PulseTrain, SpeedReading, SpeedTrace, locate};
 pub use mistake::Mistake;
 pub use packed_times::PackedTimes;
 pub use plateau::{Arc, LeftOut, PlateauMean, ScheduledPlateau};

@@ -46,9 +46,7 @@ pub use monte_carlo::{Method, MonteCarlo, ParameterStatistics, Settings, Weighte
 pub use pattern::{Pattern, Trend};
 pub use repeats::{Repeat, repeats};
 pub use rivals::{RivalTest, Rivals, Suspects, Unseen};
-pub use selection::{
-    Candidate, FittedCandidate, NestedTest, Selection, TermVerdict, candidates_of, select, select_beside,
-};
+pub use selection::{Candidate, FittedCandidate, NestedTest, Selection, TermVerdict, select, select_beside};
 pub use speeds::{Extent, ShownSpeed, SpeedContradiction, StatedSpeeds, speed_contradictions};
 pub use tilt::{OncePerRevolution, TiltComparison};
 pub use validity::{Cleaned, MountingCheck, PlateauCheck, Prediction, Validity};

@@ -12,7 +12,7 @@ pub const ADDED_SCHEMA: &str = "centrical-added/1";
 /// What became of results that were added to a store.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct AddedReport {
-    /// [`ADDED_SCHEMA`].
+    /// `centrical-added/1`.
     pub schema: &'static str,
     /// What made it.
     pub program: Program,

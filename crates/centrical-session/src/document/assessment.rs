@@ -16,7 +16,7 @@ pub const ASSESSMENT_SCHEMA: &str = "centrical-assessment/1";
 /// Budget, checks and prediction of a calibration.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct AssessmentReport {
-    /// [`ASSESSMENT_SCHEMA`].
+    /// `centrical-assessment/1`.
     pub schema: &'static str,
     /// What made it.
     pub program: Program,

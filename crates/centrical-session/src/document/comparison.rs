@@ -16,7 +16,7 @@ pub const COMPARISON_SCHEMA: &str = "centrical-comparison/1";
 /// Results compared two by two.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ComparisonReport {
-    /// [`COMPARISON_SCHEMA`].
+    /// `centrical-comparison/1`.
     pub schema: &'static str,
     /// What made it.
     pub program: Program,

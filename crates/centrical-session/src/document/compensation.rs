@@ -14,7 +14,7 @@ pub const COMPENSATION_SCHEMA: &str = "centrical-compensation/1";
 /// A compensated record.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct CompensationReport {
-    /// [`COMPENSATION_SCHEMA`].
+    /// `centrical-compensation/1`.
     pub schema: &'static str,
     /// What made it.
     pub program: Program,

@@ -14,7 +14,7 @@ pub const DOCUMENTS_SCHEMA: &str = "centrical-documents/1";
 /// The documents of a result, and its verdict.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct DocumentsReport {
-    /// [`DOCUMENTS_SCHEMA`].
+    /// `centrical-documents/1`.
     pub schema: &'static str,
     /// What made it.
     pub program: Program,

@@ -14,7 +14,7 @@ pub const DRAFT_SCHEMA: &str = "centrical-draft/1";
 /// A drafted experiment file, and what a person has to complete.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct DraftReport {
-    /// [`DRAFT_SCHEMA`].
+    /// `centrical-draft/1`.
     pub schema: &'static str,
     /// What made it.
     pub program: Program,

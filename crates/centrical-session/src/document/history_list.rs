@@ -13,7 +13,7 @@ pub const HISTORY_LIST_SCHEMA: &str = "centrical-history-list/1";
 /// The calibrations of a store.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct HistoryList {
-    /// [`HISTORY_LIST_SCHEMA`].
+    /// `centrical-history-list/1`.
     pub schema: &'static str,
     /// What made it.
     pub program: Program,

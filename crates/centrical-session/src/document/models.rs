@@ -14,7 +14,7 @@ pub const MODELS_SCHEMA: &str = "centrical-models/1";
 /// The models that were fitted, and the one that the data support.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ModelsReport {
-    /// [`MODELS_SCHEMA`].
+    /// `centrical-models/1`.
     pub schema: &'static str,
     /// What made it.
     pub program: Program,

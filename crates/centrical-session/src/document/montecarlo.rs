@@ -17,7 +17,7 @@ const ONCE_IN_TWENTY: f64 = 1.36;
 /// What the runs show beside what was stated.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct MonteCarloReport {
-    /// [`MONTE_CARLO_SCHEMA`].
+    /// `centrical-montecarlo/1`.
     pub schema: &'static str,
     /// What made it.
     pub program: Program,

@@ -74,7 +74,7 @@ impl From<Plan> for Subject {
 /// What an experiment can see, why not more, and what would help.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ObservabilityReport {
-    /// [`OBSERVABILITY_SCHEMA`].
+    /// `centrical-observability/1`.
     pub schema: &'static str,
     /// What made it.
     pub program: Program,

@@ -17,7 +17,7 @@ pub const REDUCTION_SCHEMA: &str = "centrical-reduction/1";
 /// A session reduced to its plateau means.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ReductionReport {
-    /// [`REDUCTION_SCHEMA`].
+    /// `centrical-reduction/1`.
     pub schema: &'static str,
     /// What made it.
     pub program: Program,

@@ -12,7 +12,7 @@ pub const SERIES_SCHEMA: &str = "centrical-series/1";
 /// How a series ended.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct SeriesSummary {
-    /// [`SERIES_SCHEMA`].
+    /// `centrical-series/1`.
     pub schema: &'static str,
     /// What made it.
     pub program: Program,

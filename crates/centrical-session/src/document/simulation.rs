@@ -15,7 +15,7 @@ pub const SIMULATION_SCHEMA: &str = "centrical-simulation/1";
 /// A session that was simulated. The truth is in its `truth.json`.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct SimulationReport {
-    /// [`SIMULATION_SCHEMA`].
+    /// `centrical-simulation/1`.
     pub schema: &'static str,
     /// What made it.
     pub program: Program,

@@ -18,6 +18,5 @@ mod readings;
 pub use crate::linalg::factor::Factor;
 pub use information::Filter;
 pub(super) use information::smoothed;
-pub use innovation::Innovation;
 pub use lifetimes::Lifetimes;
 pub use readings::Readings;

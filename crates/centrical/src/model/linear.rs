@@ -6,17 +6,12 @@
 
 use nalgebra::Vector3;
 
-use super::experiment::{Experiment, SetPoint};
+use super::experiment::SetPoint;
 use super::kind::Kind;
 use super::measurement::{Linearisation, MeasurementModel};
 use super::nominal::Nominal;
 pub use super::nominal::nominal;
 use super::share::Share;
-
-/// The source's small measurement `z = (mean f' - f0_z) / g` [K5.2], dimensionless.
-pub fn small_measurement(experiment: &Experiment, set_point: &SetPoint, mean: &Vector3<f64>) -> Vector3<f64> {
-    (mean - nominal(experiment, set_point)) / experiment.site.gravity
-}
 
 impl MeasurementModel {
     /// Three rows of `g H` [K5.3] about the nominal reading `f0_z` [K5.1], with the direction `d f0_z / d ln Omega`

@@ -99,13 +99,6 @@ impl Study {
     pub fn prior_uses(&self) -> Vec<PriorUse> {
         prior::uses(self.model.priors(), |i, j| self.observability.covariance(i, j))
     }
-
-    /// Indices of the instrument's parameters that are lost.
-    pub fn lost_of_instrument(&self) -> Vec<usize> {
-        let parameters = self.model.parameters().iter().enumerate();
-        let lost = parameters.filter(|(j, p)| p.is_of_instrument() && !self.observability.is_estimable(*j));
-        lost.map(|(j, _)| j).collect()
-    }
 }
 
 /// What plateaus with the whitened `rows` determine, with `priors`.

@@ -46,17 +46,6 @@ impl PowerLaw {
         }
     }
 
-    /// The power law that dominates the phase at averaging factor `m`, by lag-1 autocorrelation.
-    ///
-    /// Every m-th phase point, less a quadratic, is differenced until it is no longer more correlated than flicker:
-    /// `rho = r_1 / (1 + r_1) < 1/4` or `order` times; then `alpha = 2 - round(2 rho) - 2 d` after d differences.
-    /// `order` is that of the estimator, 2 (Allan) or 3 (Hadamard); its reddest noise is alpha = 2 - 2 order.
-    /// `None` with fewer than 30 points left, or if they do not vary.
-    /// Source: Riley and Greenhall, "Power law noise identification using the lag 1 autocorrelation", EFTF 2004.
-    pub fn identify(phase: &Phase, m: usize, order: usize) -> Option<Self> {
-        exponent(phase, m, order).map(|(alpha, _)| Self::nearest(alpha, order))
-    }
-
     /// The power law next to a fractional alpha, among those for which the estimator of that order converges.
     fn nearest(alpha: f64, order: usize) -> Self {
         let reddest = if order >= 3 { Self::RandomRun } else { Self::RandomWalk };
@@ -113,7 +102,14 @@ impl FollowedLaw {
     }
 }
 
-/// Fractional alpha by the lag-1 autocorrelation, as [`PowerLaw::identify`] says, and its standard uncertainty.
+/// Fractional alpha of the noise that dominates the phase at averaging factor `m`, by lag-1 autocorrelation, and its standard
+/// uncertainty.
+///
+/// Every m-th phase point, less a quadratic, is differenced until it is no longer more correlated than flicker:
+/// `rho = r_1 / (1 + r_1) < 1/4` or `order` times; then `alpha = 2 - 2 rho - 2 d` after d differences.
+/// `order` is that of the estimator, 2 (Allan) or 3 (Hadamard); its reddest noise is alpha = 2 - 2 order.
+/// `None` with fewer than 30 points left, or if they do not vary.
+/// Source: Riley and Greenhall, "Power law noise identification using the lag 1 autocorrelation", EFTF 2004.
 fn exponent(phase: &Phase, m: usize, order: usize) -> Option<(f64, f64)> {
     const FEWEST: usize = 30;
     let mut z: Vec<f64> = phase.points().iter().step_by(m.max(1)).copied().collect();

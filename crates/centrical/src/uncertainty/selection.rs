@@ -91,7 +91,7 @@ pub struct TermVerdict {
 
 /// The candidates beside a model: the linear part of its error model alone, with squares, with cubes, the model itself, and the
 /// model with each rival of the catalogue that it leaves out.
-pub fn candidates_of(model: &MeasurementModel) -> Vec<Candidate> {
+fn candidates_of(model: &MeasurementModel) -> Vec<Candidate> {
     let part = |keep: &dyn Fn(&Monomial) -> bool| ErrorModel {
         terms: model.error_model().terms.iter().filter(|t| keep(&t.monomial)).cloned().collect(),
     };

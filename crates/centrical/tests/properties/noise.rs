@@ -170,10 +170,12 @@ fn the_power_law_is_identified() {
         (Recipe { random_walk: 1.0, ..none }, PowerLaw::RandomWalk),
     ];
     for (recipe, law) in cases {
-        for order in [2, 3] {
-            let phase = phase(&recipe, READINGS, 1);
-            assert!([1, 4, 16].into_iter().all(|m| PowerLaw::identify(&phase, m, order) == Some(law)), "{law:?}");
-            assert_eq!(PowerLaw::identify(&phase, READINGS / 20, order), None);
+        let phase = phase(&recipe, READINGS, 1);
+        for estimator in [Estimator::OverlappingAllan, Estimator::OverlappingHadamard] {
+            let found = deviations(&phase, estimator, &[1, 4, 16, READINGS / 20], 0.683, &unwatched).unwrap();
+            let (short, long) = found.split_at(3);
+            assert!(short.iter().all(|d| d.law == law && d.is_identified), "{estimator:?}, {law:?}: {short:?}");
+            assert!(matches!(long, [d] if !d.is_identified), "{estimator:?}, {law:?}: {long:?}");
         }
     }
 }

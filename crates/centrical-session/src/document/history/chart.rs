@@ -14,7 +14,7 @@ pub const CHART_SCHEMA: &str = "centrical-chart/1";
 /// Control charts of one parameter.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ChartReport {
-    /// [`CHART_SCHEMA`].
+    /// `centrical-chart/1`.
     pub schema: &'static str,
     /// What made it.
     pub program: Program,

@@ -17,7 +17,7 @@ pub(crate) const FAMILY: f64 = 0.05;
 /// The history of a station.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct StationHistoryReport {
-    /// [`STATION_HISTORY_SCHEMA`].
+    /// `centrical-station-history/1`.
     pub schema: &'static str,
     /// What made it.
     pub program: Program,

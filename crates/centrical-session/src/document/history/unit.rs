@@ -42,7 +42,7 @@ pub struct LeftOutSession {
 /// The history of a unit.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct UnitHistoryReport {
-    /// [`UNIT_HISTORY_SCHEMA`].
+    /// `centrical-unit-history/1`.
     pub schema: &'static str,
     /// What made it.
     pub program: Program,

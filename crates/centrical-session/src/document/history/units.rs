@@ -14,7 +14,7 @@ pub const UNITS_HISTORY_SCHEMA: &str = "centrical-units-history/1";
 /// Units of one type.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct UnitsHistoryReport {
-    /// [`UNITS_HISTORY_SCHEMA`].
+    /// `centrical-units-history/1`.
     pub schema: &'static str,
     /// What made it.
     pub program: Program,

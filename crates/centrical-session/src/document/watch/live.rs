@@ -21,7 +21,7 @@ pub const LIVE_SCHEMA: &str = "centrical-live/1";
 /// What a watch sees at this moment. Times are seconds since 1970, UTC.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct LiveReport {
-    /// [`LIVE_SCHEMA`].
+    /// `centrical-live/1`.
     pub schema: String,
     /// Title of the session.
     pub title: String,
