@@ -42,3 +42,4 @@ pub(crate) use self::stated_attitudes::write_attitudes;
 pub(crate) use self::toml_path::TomlPath;
 pub use self::turning::{MOST_DISTANT, Turning};
 pub use self::unit::OutputUnit;
+pub(crate) use self::unit::RAW_OUTPUT;

@@ -2,8 +2,8 @@
 //! errors.
 
 use centrical_session::{
-    AxesParameter, CalibrationResult, Condition, Laboratory, OutputSummary, ParameterEstimate, Symbol, Unit,
-    UnknownUnit,
+    AxesParameter, CalibrationResult, Condition, Laboratory, OutputSummary, OutputUnit, ParameterEstimate, Symbol,
+    Unit, UnknownUnit,
 };
 use nalgebra::Vector3;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
@@ -182,7 +182,11 @@ fn nominal(xml: &mut Xml, result: &CalibrationResult, language: Language) {
     let messages = language.messages();
     let Some(OutputSummary { unit, scale, bias }) = &result.output else { return };
     // Counts are a number; what has no symbol in D-SI is named in words alone.
-    let raw = if unit == "counts" { Some("") } else { Symbol::of(unit).and_then(|symbol| symbol.d_si) };
+    let raw = if OutputUnit::named(unit) == OutputUnit::Counts {
+        Some("")
+    } else {
+        Symbol::of(unit).and_then(|symbol| symbol.d_si)
+    };
     let Some(raw) = raw else { return };
     let per_force = format!("{raw}\\metre\\tothe{{-1}}\\second\\tothe{{2}}");
     let raw = if raw.is_empty() { "\\one" } else { raw };

@@ -30,8 +30,8 @@ pub(super) fn legend<'p>(screen: &mut Screen, parameters: impl Iterator<Item = (
     let (mut has_position, mut has_pair) = (false, false);
     for (name, group) in parameters {
         let Symbol { stem, place, .. } = Symbol::of(name);
-        has_position |= stem == "delta" && !place.is_empty();
-        has_pair |= stem == "dR" && !place.is_empty();
+        has_position |= group == Group::Turn && !place.is_empty();
+        has_pair |= group == Group::Shift && !place.is_empty();
         match stems.iter_mut().find(|(known, _)| *known == stem) {
             Some((_, groups)) if groups.contains(&group) => {}
             Some((_, groups)) => groups.push(group),

@@ -54,14 +54,14 @@ pub enum OutputUnit {
     Acceleration,
 }
 
+/// Raw output: its kind, its name under `output_unit`, and the key of its scale and bias.
+pub(crate) const RAW_OUTPUT: [(OutputUnit, &str, &str); 2] =
+    [(OutputUnit::Counts, "counts", "counts"), (OutputUnit::Volts, "V", "volts")];
+
 impl OutputUnit {
     /// The kind of the unit that a session names.
-    pub(crate) fn named(name: &str) -> Self {
-        match name {
-            "counts" => Self::Counts,
-            "V" => Self::Volts,
-            _ => Self::Acceleration,
-        }
+    pub fn named(name: &str) -> Self {
+        RAW_OUTPUT.iter().find(|(_, raw, _)| *raw == name).map_or(Self::Acceleration, |(kind, ..)| *kind)
     }
 }
 
@@ -70,9 +70,7 @@ pub(crate) fn output(file: &Path, table: &UnitTable) -> Result<[Scale; 3], Error
     let at = TomlPath::table(file, "unit");
     let unit = table.output_unit.as_str();
     let kind = OutputUnit::named(unit);
-    // Keys of raw outputs, and what each is for.
-    let keys = [("counts", OutputUnit::Counts, &table.counts), ("volts", OutputUnit::Volts, &table.volts)];
-    for (key, of, coarse) in keys {
+    for ((of, own, key), coarse) in RAW_OUTPUT.into_iter().zip([&table.counts, &table.volts]) {
         match coarse {
             Some(coarse) if kind == of => return from_raw(file, key, coarse),
             None if kind == of => {
@@ -80,7 +78,6 @@ pub(crate) fn output(file: &Path, table: &UnitTable) -> Result<[Scale; 3], Error
                 return Err(at.unexpected(key, "no such key", expected));
             }
             Some(_) => {
-                let own = if of == OutputUnit::Counts { "counts" } else { "V" };
                 let expected = format!("no {key}, or output_unit = {own:?}");
                 return Err(at.unexpected(key, format!("{key} and output_unit = {unit:?}"), expected));
             }

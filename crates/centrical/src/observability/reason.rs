@@ -8,7 +8,7 @@ use super::combination::sum_text;
 use super::direction::NullDirection;
 use super::remedy::{new_angle, new_radius, new_speed};
 use super::study::Study;
-use crate::model::{Linearisation, MeasurementModel};
+use crate::model::{Group, Linearisation, MeasurementModel};
 
 /// A change of a reading below this part of the largest change by a single term is rounding: null directions are known
 /// to 1e-7 (see `TAKES_PART`).
@@ -201,7 +201,10 @@ impl Reason {
 /// `newtonometer 2 is seen at one distance only: dR_2[A] + drho_22 in positions 1, 2, dR_1[B] + drho_22 in ...`
 fn newtonometer_text(sights: &[&Sight], study: &Study) -> String {
     let (parameters, experiment) = (study.model().parameters(), study.model().experiment());
-    let is_distance = sights.iter().flat_map(|s| &s.terms).all(|(j, _)| parameters[*j].unit == "m");
+    let is_distance = sights
+        .iter()
+        .flat_map(|s| &s.terms)
+        .all(|(j, _)| matches!(parameters[*j].group, Group::Shift | Group::ProofMass));
     let lead = if is_distance { "feels nothing but its own distance:" } else { "feels only" };
     let seen: Vec<String> = sights
         .iter()

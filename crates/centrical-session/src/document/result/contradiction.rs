@@ -6,10 +6,8 @@ use centrical::{ErrorModel, Term};
 use centrical_table::LARGEST_NUMBER;
 
 use super::schema::{CalibrationResult, ConvergenceSummary, ObservabilitySummary, ParameterEstimate};
+use crate::experiment::{OutputUnit, RAW_OUTPUT};
 use crate::quantity::Quantity;
-
-/// Units of raw output.
-const RAW_UNITS: [&str; 2] = ["counts", "V"];
 
 /// Relative difference of a variance from the square of a standard uncertainty that may be computed in another way: rounding makes some 1e-9 of it.
 const ROUNDING: f64 = 1e-6;
@@ -71,8 +69,9 @@ fn of_gravity(result: &CalibrationResult) -> Option<Contradiction> {
 /// Raw output has a unit that sessions know, and a scale.
 fn of_output(result: &CalibrationResult) -> Option<Contradiction> {
     let output = result.output.as_ref()?;
-    if !RAW_UNITS.contains(&output.unit.as_str()) {
-        return Some((format!("raw output in {:?}", output.unit), format!("one of {}", RAW_UNITS.join(", "))));
+    if OutputUnit::named(&output.unit) == OutputUnit::Acceleration {
+        let known = RAW_OUTPUT.map(|(_, unit, _)| unit);
+        return Some((format!("raw output in {:?}", output.unit), format!("one of {}", known.join(", "))));
     }
     let is_scale = |scale: &f64| scale.is_normal();
     (!output.scale.iter().all(is_scale))

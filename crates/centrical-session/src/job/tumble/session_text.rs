@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use centrical::reduction::{CoarseScale, Rests};
 
 use super::request::TumbleRequest;
-use crate::experiment::Turning;
+use crate::experiment::{RAW_OUTPUT, Turning};
 use crate::settings::toml_text;
 
 /// Name of the table of rests.
@@ -35,7 +35,8 @@ pub(super) fn session_text(request: &TumbleRequest, coarse: Option<&CoarseScale>
     line(format!("serial = {}", toml_text(&request.serial)));
     match coarse {
         Some(CoarseScale { scale, bias }) => {
-            let (key, unit) = if request.unit == "V" { ("volts", "V") } else { ("counts", "counts") };
+            let raw = RAW_OUTPUT.into_iter().find(|(_, unit, _)| *unit == request.unit);
+            let (_, unit, key) = raw.unwrap_or(RAW_OUTPUT[0]);
             line(format!("output_unit = \"{unit}\""));
             line(format!("{key} = {{ scale = {:?}, bias = {:?} }}\n", scale.as_slice(), bias.as_slice()));
         }
