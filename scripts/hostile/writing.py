@@ -121,6 +121,13 @@ def inputs(place):
     found.judge("calibrate over another unit's result.json", done, codes=(2,), why=None if same else "overwritten")
     done = run(["calibrate", folder / "session"], folder)
     found.judge("calibrate over its own result.json", done, codes=(0,))
+    run(["reduce", folder / "session", "--out", "reduced"], folder)
+    means = folder / "reduced/experiment.toml"
+    means.write_text(means.read_text().replace('serial = "0001"', 'serial = "0002"'))
+    before = means.read_text()
+    done = run(["reduce", folder / "session", "--out", "reduced"], folder)
+    why = None if means.read_text() == before else "overwritten"
+    found.judge("reduce over the means of another unit", done, codes=(2,), why=why)
     shutil.rmtree(folder)
     return found
 

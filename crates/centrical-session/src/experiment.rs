@@ -35,7 +35,7 @@ pub use self::plateaus::{PlateauMean, PlateauTable, read_plateaus, write_plateau
 pub use self::rests::{KnownAttitudes, PlannedRests, RecordedRests, RestSource, RestTable};
 pub(crate) use self::session::EXPERIMENT_FILE;
 pub use self::session::{MountingFiles, Session};
-pub(crate) use self::session_there::{refuse_session, refuse_session_of_records};
+pub(crate) use self::session_there::{refuse_another_session, refuse_session};
 pub use self::speeds::{Measured, SpeedSource, Speeds};
 pub use self::stated_attitudes::StatedAttitudes;
 pub(crate) use self::stated_attitudes::write_attitudes;

@@ -112,3 +112,22 @@ fn a_session_is_not_written_over() {
     fs::remove_file(&file).unwrap();
     assert!(reduce(&out, "csv", "2").status.success() && reduce(&out, "csv", "2").status.success());
 }
+
+/// Means of one unit do not replace those of another, but those of the same.
+#[test]
+fn means_of_another_unit_stay() {
+    let folder = TempDir::new().unwrap();
+    let reduced = || reduce(folder.path(), "csv", "2");
+    assert!(reduced().status.success() && reduced().status.success());
+    let file = folder.path().join("experiment.toml");
+    let other = fs::read_to_string(&file).unwrap().replace("serial = \"0001\"", "serial = \"0002\"");
+    fs::write(&file, &other).unwrap();
+    let refused = reduced();
+    let said = String::from_utf8_lossy(&refused.stderr).into_owned();
+    assert_eq!(
+        (refused.status.code(), said.contains("of plateau means alone and of the same unit")),
+        (Some(2), true),
+        "{said}"
+    );
+    assert!(fs::read_to_string(&file).unwrap() == other);
+}

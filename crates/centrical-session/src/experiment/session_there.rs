@@ -14,15 +14,16 @@ pub(crate) fn refuse_session(folder: &Path) -> Result<(), Error> {
     refuse(folder, "a folder without one", |_| false)
 }
 
-/// The same, but for a session of means alone: such a one this program writes, and can write again.
+/// The same, but for means alone of the unit of `session`: such a session this program writes, and can write again.
 ///
 /// # Errors
 /// As [`refuse_session`].
-pub(crate) fn refuse_session_of_records(folder: &Path) -> Result<(), Error> {
-    refuse(folder, "a folder without one, or with one of plateau means alone", is_of_means)
+pub(crate) fn refuse_another_session(folder: &Path, session: &Session) -> Result<(), Error> {
+    let may_be_replaced = |there: &Session| is_of_means(there) && is_of_unit(there, session);
+    refuse(folder, "a folder without one, or with one of plateau means alone and of the same unit", may_be_replaced)
 }
 
-fn refuse(folder: &Path, expected: &str, may_be_replaced: fn(&Session) -> bool) -> Result<(), Error> {
+fn refuse(folder: &Path, expected: &str, may_be_replaced: impl Fn(&Session) -> bool) -> Result<(), Error> {
     let file = folder.join(EXPERIMENT_FILE);
     if !file.exists() || Session::read_before_rests(&file).is_ok_and(|session| may_be_replaced(&session)) {
         return Ok(());
@@ -35,4 +36,10 @@ fn is_of_means(session: &Session) -> bool {
     let is_table = |source: &RestSource| matches!(source, RestSource::Table(_));
     session.plateaus.is_some() != session.mountings.is_empty()
         && session.rest_tables.iter().all(|table| is_table(&table.source))
+}
+
+/// Whether a session is of the unit of `other`, or does not say which it is of.
+fn is_of_unit(session: &Session, other: &Session) -> bool {
+    let named = |session: &Session| [session.unit_model.clone(), session.unit_serial.clone()];
+    named(session).iter().all(String::is_empty) || named(session) == named(other)
 }

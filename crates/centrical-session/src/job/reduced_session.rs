@@ -10,7 +10,7 @@ use super::calibrate::calibrate_reduced;
 use crate::document::{CalibrationResult, Method, RecordFindings};
 use crate::error::{Error, Place};
 use crate::experiment::{
-    EXPERIMENT_FILE, PlateauMean, RestTable, Session, SpeedSource, refuse_session_of_records, write_attitudes,
+    EXPERIMENT_FILE, PlateauMean, RestTable, Session, SpeedSource, refuse_another_session, write_attitudes,
     write_plateaus, write_plateaus_parquet,
 };
 use crate::reduced::Reduced;
@@ -27,7 +27,7 @@ const RESTS: [&str; 2] = ["rests.csv", "attitudes.csv"];
 /// session is calibrated for what the records show beside their means.
 ///
 /// # Errors
-/// [`Error`] if the folder is that of a session with records, the session's own at that, or does not take the files.
+/// [`Error`] if the folder is that of a session with records or of another unit, the session's own at that, or does not take the files.
 pub fn write_reduced(
     session: &Session,
     reduced: &Reduced,
@@ -41,7 +41,7 @@ pub fn write_reduced(
         let expected = "another folder than the session's own";
         return Err(Error::content(&experiment_file, Place::Whole, "the session itself", expected));
     }
-    refuse_session_of_records(folder)?;
+    refuse_another_session(folder, session)?;
     let (name, write): (_, fn(&Path, &[PlateauMean]) -> _) = match format {
         TableFormat::Csv => ("plateaus.csv", write_plateaus),
         TableFormat::Parquet => ("plateaus.parquet", write_plateaus_parquet),

@@ -201,7 +201,29 @@ impl Prologue {
             }
             number += 1;
         }
-        if lines.is_empty() { Ok(None) } else { self.start(&lines, first, fields).map(Some) }
+        if lines.is_empty() {
+            return Ok(None);
+        }
+        let start = self.start(&lines, first, fields)?;
+        if !start.has_header {
+            start.layout.check_comments(text, start.skipped, fields)?;
+        }
+        Ok(Some(start))
+    }
+}
+
+impl Layout {
+    /// Refuses a row whose first cell a spreadsheet could not compute among the `above` lines before the first row, which looks like a comment.
+    fn check_comments(&self, text: &[u8], above: u64, fields: &[Field]) -> Result<(), (u64, Fault)> {
+        let (mut rest, mut row) = (text, vec![0.0; fields.len()]);
+        for number in 0..above {
+            let line;
+            (line, rest) = split_line(rest);
+            if !is_data(line) && self.is_failed_row(line) {
+                self.row(line, &mut row, fields).map_err(|fault| (number, fault))?;
+            }
+        }
+        Ok(())
     }
 }
 

@@ -28,6 +28,8 @@ pub(super) struct Prologue {
 /// What stands before the first row.
 pub(super) struct Start {
     pub layout: Layout,
+    /// Whether one of the lines before the first row holds the names.
+    pub has_header: bool,
     /// Lines of the text before the first row.
     pub skipped: u64,
     pub units: Option<UnitsFound>,
@@ -81,7 +83,7 @@ impl Prologue {
                 start.layout.fit(row);
             }
         }
-        Ok(Start { layout: start.layout, skipped, units })
+        Ok(Start { layout: start.layout, has_header: start.is_header, skipped, units })
     }
 
     /// The index of the header, or of the first row.

@@ -2,14 +2,20 @@
 
 use std::fs;
 
-use crate::record::{named, read_record};
+use centrical_table::ColumnName;
+
+use crate::record::{named, numbered, read_record};
 
 /// The message for a record with this content.
 fn message(content: impl AsRef<[u8]>) -> String {
+    message_by(content, &named())
+}
+
+fn message_by(content: impl AsRef<[u8]>, columns: &[ColumnName; 4]) -> String {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("m01.csv");
     fs::write(&file, content).unwrap();
-    let error = read_record(&file, &named()).expect_err("the record is wrong");
+    let error = read_record(&file, columns).expect_err("the record is wrong");
     error.to_string().replace(&format!("{}/", folder.path().display()), "")
 }
 
@@ -48,6 +54,11 @@ fn a_row_that_was_not_computed_is_no_comment() {
     let comments = "#time,f1,f2,f3\n#comment, with 3 commas, in it, x\n#0.5,1,2,3\n##0.5,1,2,3\n# made,1,2,3\n#,1,2,3\n#rate,100\n#see,,,\n";
     let text = format!("t,f1,f2,f3\n{comments}0,1,2,3\n{comments}1,1,2,3\nwrong,1,2,3\n");
     assert_eq!(message(text), r#"m01.csv, line 20, t: found "wrong", expected a number in s"#);
+    // Without a header the first row can be one.
+    let first = message_by("# made today\n#NV,1,2,3\n1,1,2,3\n", &numbered());
+    assert!(first.contains(r##", line 2, column 1: found "#NV", "##), "{first}");
+    let after_comments = message_by(format!("{comments}1,1,2,3\nwrong,1,2,3\n"), &numbered());
+    assert!(after_comments.contains(", line 10, column 1: "), "{after_comments}");
 }
 
 #[test]

@@ -12,7 +12,7 @@ use super::request::TumbleRequest;
 use super::session_text::{ATTITUDES, TABLE, session_text};
 use crate::document::{CalibrationResult, Method};
 use crate::error::{Error, Place};
-use crate::experiment::{EXPERIMENT_FILE, Folder, Session, refuse_session_of_records, write_attitudes, write_plateaus};
+use crate::experiment::{EXPERIMENT_FILE, Folder, Session, refuse_another_session, write_attitudes, write_plateaus};
 use crate::job::calibrate::calibrate_reduced;
 use crate::job::noise::Series;
 use crate::job::reduce::{find_rests, refuse_repeated_rests};
@@ -91,9 +91,9 @@ impl Tumble {
     /// Writes the rests as a session into `folder`, which is there, and the result beside.
     ///
     /// # Errors
-    /// If the folder holds a session with records or does not take the files, or one of them was read.
+    /// If the folder holds a session with records or of another unit, or does not take the files, or one of them was read.
     pub fn write(&self, request: &TumbleRequest, folder: &Path) -> Result<(), Error> {
-        refuse_session_of_records(folder)?;
+        refuse_another_session(folder, &self.session)?;
         let names = [TABLE, ATTITUDES, EXPERIMENT_FILE, "result.json"];
         let outputs @ [table, attitudes, experiment, result] = &names.map(|name| folder.join(name));
         refuse_inputs(outputs, &request.inputs().collect::<Vec<_>>())?;
