@@ -114,20 +114,23 @@ impl Rivals<'_> {
             let size =
                 needed.filter(|_| is_seen).map(|needed| (needed / redundancy[(c, c)]).sqrt() / columns.lengths[c]);
             let moved = shifts.column(c) * (columns.lengths[c] * size.unwrap_or(unknown.typical));
-            let (parameter, standard_uncertainties) = self.most_moved(moved.as_slice())?;
-            let unseen = || Unseen {
+            let (parameter, harm) = self.most_moved(moved.as_slice())?;
+            (size.is_some() || harm > HARMFUL).then_some((c, size, moved, parameter, harm))
+        });
+        let worst = candidates.max_by(|(.., a), (.., b)| a.total_cmp(b));
+        Ok(worst.map(|(c, size, moved, parameter, harm)| {
+            let unseen = Unseen {
                 rival: *rival,
-                unknown: unknown.clone(),
+                unknown: unknowns[c].clone(),
                 size,
                 parameter,
                 shift: moved[parameter],
-                standard_uncertainties,
+                standard_uncertainties: harm,
                 reading: self.reading_error(moved.as_slice(), forces_z),
                 price: self.price(suspect, &shifts.row(parameter).transpose(), parameter),
             };
-            (size.is_some() || standard_uncertainties > HARMFUL).then(|| (c, unseen()))
-        });
-        Ok(candidates.max_by(|(_, a), (_, b)| a.standard_uncertainties.total_cmp(&b.standard_uncertainties)))
+            (c, unseen)
+        }))
     }
 
     /// With the rival as an unknown the variance of a parameter grows by `g^T (s^T s)^+ g`, where `g` is its change by one unit
