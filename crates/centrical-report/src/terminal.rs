@@ -32,7 +32,9 @@ pub use self::assess::assessment_text;
 pub use self::calibrate::{terminal_table, verdict_text};
 pub use self::compare::comparison_text;
 pub use self::compensate::compensation_text;
-pub use self::history::{chart_text, history_list_text, station_history_text, unit_history_text, units_history_text};
+pub use self::history::{
+    chart_text, finding_mark, history_list_text, station_history_text, unit_history_text, units_history_text,
+};
 pub use self::models::selection_table;
 pub use self::montecarlo::monte_carlo_text;
 pub use self::noise::{noise_table, noise_warnings};

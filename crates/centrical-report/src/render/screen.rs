@@ -12,24 +12,24 @@ pub(super) fn shown(body: &mut String, screen: &Screen) {
             Part::Gap => Ok(()),
             Part::Table(table) => whole_table(body, table),
             Part::Words { mark: None, words, .. } => writeln!(body, "<p>{}</p>", Escaped(words)),
-            Part::Words { mark: Some((Emphasis::Heading, mark)), words, .. } => {
-                writeln!(
-                    body,
-                    "<h2>{}</h2>\n<p class=\"note\">{}</p>",
-                    Escaped(&sentence_case(mark)),
-                    Escaped(words.trim_start())
-                )
-            }
             Part::Words { mark: Some((emphasis, mark)), words, .. } => {
-                let class = match emphasis {
-                    Emphasis::Acceptable => " class=\"good\"",
-                    Emphasis::NotAcceptable => " class=\"bad\"",
-                    Emphasis::Warning | Emphasis::Heading => "",
-                };
-                writeln!(body, "<p><strong{class}>{}</strong> {}</p>", Escaped(mark), Escaped(words.trim_start()))
+                marked(body, *emphasis, mark, words.trim_start())
             }
         };
     }
+}
+
+fn marked(body: &mut String, emphasis: Emphasis, mark: &str, words: &str) -> std::fmt::Result {
+    let class = match emphasis {
+        Emphasis::Heading => {
+            let heading = sentence_case(mark);
+            return writeln!(body, "<h2>{}</h2>\n<p class=\"note\">{}</p>", Escaped(&heading), Escaped(words));
+        }
+        Emphasis::Acceptable => " class=\"good\"",
+        Emphasis::NotAcceptable => " class=\"bad\"",
+        Emphasis::Warning => "",
+    };
+    writeln!(body, "<p><strong{class}>{}</strong> {}</p>", Escaped(mark), Escaped(words))
 }
 
 /// A heading in capitals as a sentence begins.

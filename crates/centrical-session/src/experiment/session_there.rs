@@ -39,7 +39,7 @@ fn is_of_means(session: &Session) -> bool {
 }
 
 /// Whether a session is of the unit of `other`, or does not say which it is of.
-fn is_of_unit(session: &Session, other: &Session) -> bool {
-    let named = |session: &Session| [session.unit_model.clone(), session.unit_serial.clone()];
-    named(session).iter().all(String::is_empty) || named(session) == named(other)
+fn is_of_unit<'s>(session: &'s Session, other: &'s Session) -> bool {
+    let unit = |session: &'s Session| [session.unit_model.as_str(), session.unit_serial.as_str()];
+    unit(session) == ["", ""] || unit(session) == unit(other)
 }

@@ -107,7 +107,9 @@ impl Store {
     }
 
     fn files_of_rows(&self) -> Result<Vec<PathBuf>, Error> {
-        files_of(&self.rows_folder())
+        let mut files = files_of(&self.rows_folder())?;
+        files.sort();
+        Ok(files)
     }
 
     fn lock_file(&self) -> PathBuf {
@@ -124,14 +126,13 @@ impl Store {
     }
 }
 
-/// The files of a folder, by name.
+/// The files of a folder, in any order.
 fn files_of(folder: &Path) -> Result<Vec<PathBuf>, Error> {
     let failed = |error| Error::reading(folder, error, "a folder of a store");
     let mut files = Vec::new();
     for entry in fs::read_dir(folder).map_err(failed)? {
         files.push(entry.map_err(failed)?.path());
     }
-    files.sort();
     Ok(files)
 }
 

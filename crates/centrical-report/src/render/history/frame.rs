@@ -50,6 +50,17 @@ pub(super) fn opening(kind: &str, title: &str) -> String {
     )
 }
 
+/// The serial number of a unit, with a link to its page where `has_page` says by its file that there is one.
+pub(super) fn linked_serial(unit_model: &str, unit_serial: &str, has_page: impl Fn(&str) -> bool) -> String {
+    let (file, serial) = (PageKind::Unit.file(&[unit_model, unit_serial]), Escaped(unit_serial));
+    if has_page(&file) { format!("<a href=\"{file}\">{serial}</a>") } else { serial.to_string() }
+}
+
+/// A cell with a verdict.
+pub(super) fn verdict(is_good: bool, good: &str, bad: &str) -> String {
+    if is_good { format!("<td class=\"good\">{good}</td>") } else { format!("<td class=\"bad\">{bad}</td>") }
+}
+
 /// Drawings side by side.
 pub(super) fn panels(body: &mut String, plots: impl IntoIterator<Item = Plot>) {
     body.push_str("<div class=\"panels\">\n");

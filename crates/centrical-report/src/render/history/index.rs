@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use centrical_session::{HistoryLine, HistoryList, StationHistoryReport, UnitsHistoryReport};
 
-use super::frame::{PageKind, page};
+use super::frame::{PageKind, linked_serial, page, verdict};
 use crate::number::counted;
 use crate::plot::Escaped;
 
@@ -54,8 +54,7 @@ pub fn history_index(
          <th scope=\"col\">verdict</th></tr></thead><tbody>\n",
     );
     for line in &list.calibrations {
-        let file = PageKind::Unit.file(&[&line.unit_model, &line.unit_serial]);
-        row(&mut body, line, Some(file).filter(|file| has_page(file)));
+        row(&mut body, line, &linked_serial(&line.unit_model, &line.unit_serial, &has_page));
     }
     body.push_str("</tbody></table></div>\n");
     page("Calibrations", &body)
@@ -129,10 +128,6 @@ fn stations_table(body: &mut String, stations: &[IndexedStation]) {
     body.push_str("</tbody></table></div>\n");
 }
 
-fn verdict(is_good: bool, good: &str, bad: &str) -> String {
-    if is_good { format!("<td class=\"good\">{good}</td>") } else { format!("<td class=\"bad\">{bad}</td>") }
-}
-
 /// No test, no colour.
 fn not_tested() -> String {
     "<td>not tested</td>".to_owned()
@@ -143,7 +138,7 @@ fn signals(has_signals: bool) -> &'static str {
     if has_signals { "<td>signals</td>" } else { "<td></td>" }
 }
 
-fn row(body: &mut String, line: &HistoryLine, page: Option<String>) {
+fn row(body: &mut String, line: &HistoryLine, serial: &str) {
     let ratio = line.chi_squared.filter(|_| line.degrees_of_freedom > 0).map(|c| c / line.degrees_of_freedom as f64);
     let (verdict, class) = match line.acceptable {
         Some(true) => ("acceptable", "good"),
@@ -151,8 +146,6 @@ fn row(body: &mut String, line: &HistoryLine, page: Option<String>) {
         None => ("failed", "bad"),
     };
     let why = line.message.clone().unwrap_or_else(|| line.objections.join(", "));
-    let serial = Escaped(&line.unit_serial);
-    let serial = page.map_or_else(|| serial.to_string(), |file| format!("<a href=\"{file}\">{serial}</a>"));
     let _ = writeln!(
         body,
         "<tr><td>{}</td><td>{}</td><td>{serial}</td><td>{}</td><td class=\"number\">{}</td><td class=\"{class}\">{verdict}<span>{}</span></td></tr>",

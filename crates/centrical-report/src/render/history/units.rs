@@ -3,10 +3,11 @@
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
-use centrical_session::{HistoryLine, UnitFindingKind, UnitsHistoryReport};
+use centrical_session::{HistoryLine, UnitsHistoryReport};
 
-use super::frame::PageKind;
+use super::frame::{linked_serial, verdict};
 use crate::plot::Escaped;
+use crate::terminal::finding_mark;
 
 /// A unit in a list.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -17,8 +18,8 @@ pub struct ListedUnit {
     first: String,
     last: String,
     is_last_acceptable: bool,
-    /// Its page, if it has one.
-    page: Option<String>,
+    /// The serial number with a link to the page of the unit, if it has one.
+    linked: String,
 }
 
 impl ListedUnit {
@@ -40,24 +41,17 @@ impl ListedUnit {
                     first: line.date.clone(),
                     last: line.date.clone(),
                     is_last_acceptable: is_acceptable,
-                    page: Some(PageKind::Unit.file(&[&line.unit_model, &line.unit_serial]))
-                        .filter(|file| has_page(file)),
+                    linked: linked_serial(&line.unit_model, &line.unit_serial, &has_page),
                 }),
             }
         }
         units
     }
-
-    /// Serial number, with a link to the page of the unit.
-    fn linked(&self) -> String {
-        let serial = Escaped(&self.serial);
-        self.page.as_ref().map_or_else(|| serial.to_string(), |file| format!("<a href=\"{file}\">{serial}</a>"))
-    }
 }
 
 /// A table of `units`, with what `report` finds of each where it is of one model.
 pub(super) fn units_table(body: &mut String, units: &[ListedUnit], report: Option<&UnitsHistoryReport>) {
-    let found = report.map(findings);
+    let found = report.map(findings).unwrap_or_default();
     let (kind, last) = if report.is_some() { ("", "found") } else { ("<th scope=\"col\">model</th>", "") };
     let _ = writeln!(
         body,
@@ -67,38 +61,30 @@ pub(super) fn units_table(body: &mut String, units: &[ListedUnit], report: Optio
     );
     for unit in units {
         let model = if report.is_some() { String::new() } else { format!("<td>{}</td>", Escaped(&unit.model)) };
-        let (class, verdict) = if unit.is_last_acceptable { ("good", "acceptable") } else { ("bad", "not acceptable") };
-        let found = found.as_ref().and_then(|found| found.get(unit.serial.as_str())).map_or("", String::as_str);
+        let found = found.get(unit.serial.as_str()).map_or_else(String::new, |marks| marks.join(", "));
         let _ = writeln!(
             body,
-            "<tr><th scope=\"row\">{}</th>{model}<td class=\"number\">{}</td><td>{}</td><td>{}</td><td class=\"{class}\">{verdict}</td><td>{}</td></tr>",
-            unit.linked(),
+            "<tr><th scope=\"row\">{}</th>{model}<td class=\"number\">{}</td><td>{}</td><td>{}</td>{}<td>{}</td></tr>",
+            unit.linked,
             unit.calibrations,
             Escaped(&unit.first),
             Escaped(&unit.last),
-            Escaped(found)
+            verdict(unit.is_last_acceptable, "acceptable", "not acceptable"),
+            Escaped(&found)
         );
     }
     body.push_str("</tbody></table></div>\n");
 }
 
 /// What was found of units, by their serial numbers.
-fn findings(report: &UnitsHistoryReport) -> BTreeMap<&str, String> {
+fn findings(report: &UnitsHistoryReport) -> BTreeMap<&str, Vec<String>> {
     let outlying = report.outlying.iter().map(|unit| (unit.unit_serial.as_str(), "OUTLYING".to_owned()));
     let others = report.findings.iter().map(|finding| {
-        let does = match finding.kind {
-            UnitFindingKind::Drifts => "DRIFTS",
-            UnitFindingKind::Scatters => "SCATTERS",
-        };
-        (finding.unit_serial.as_str(), format!("{does}: {}", finding.parameter))
+        (finding.unit_serial.as_str(), format!("{}: {}", finding_mark(finding.kind), finding.parameter))
     });
-    let mut found: BTreeMap<&str, String> = BTreeMap::new();
-    for (serial, words) in outlying.chain(others) {
-        let all = found.entry(serial).or_default();
-        if !all.is_empty() {
-            all.push_str(", ");
-        }
-        all.push_str(&words);
+    let mut found: BTreeMap<&str, Vec<String>> = BTreeMap::new();
+    for (serial, mark) in outlying.chain(others) {
+        found.entry(serial).or_default().push(mark);
     }
     found
 }

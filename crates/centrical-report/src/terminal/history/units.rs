@@ -100,11 +100,15 @@ fn findings(screen: &mut Screen, report: &UnitsHistoryReport) {
             finding.parameter,
             chance(finding.probability)
         );
-        let does = match finding.kind {
-            UnitFindingKind::Drifts => "DRIFTS",
-            UnitFindingKind::Scatters => "SCATTERS",
-        };
-        screen.marked(Emphasis::NotAcceptable, does, &words);
+        screen.marked(Emphasis::NotAcceptable, finding_mark(finding.kind), &words);
+    }
+}
+
+/// The mark of what a unit does.
+pub fn finding_mark(kind: UnitFindingKind) -> &'static str {
+    match kind {
+        UnitFindingKind::Drifts => "DRIFTS",
+        UnitFindingKind::Scatters => "SCATTERS",
     }
 }
 
