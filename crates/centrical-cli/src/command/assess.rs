@@ -54,5 +54,5 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     bar.finish_and_clear();
     let text = || assessment_text(&assessment, arguments.coverage, arguments.correlations);
     arguments.printing.show(text, || assessment.report(arguments.coverage).to_json())?;
-    Ok(Outcome::Done)
+    Ok(Outcome::acceptable(assessment.objections.is_empty()))
 }

@@ -156,7 +156,8 @@ def assess(
     """Uncertainty budget (GUM), validity, patterns in the residuals, uncertainty of a compensated reading.
 
     ``without_outliers`` is the family-wise error at which outlying plateaus are left out, 0.05 for instance; ``range``
-    the largest specific force of the prediction [m/s^2], by default the highest of the session.
+    the largest specific force of the prediction [m/s^2], by default the highest of the session. ``acceptable`` and
+    ``objections`` of the document have the verdict of `calibrate` on the fit that is assessed.
     """
     with Bar("assessing") as shown:
         return Document(_native.assess(given_session(session), coverage, without_outliers, scale_by_residuals, range, shown))

@@ -4,6 +4,7 @@ use centrical::uncertainty::{Budget, CurvePoint, Degrees, Level, Pattern, Validi
 use centrical::{Experiment, Fit, MeasurementModel, Parameter, Parameters, STANDARD_GRAVITY};
 use centrical_session::{Assessment, MICRO_G, PatternSummary, customary};
 
+use super::calibrate::verdict_text;
 use super::pattern::pattern_in_words;
 use super::screen::Screen;
 use super::symbols::legend;
@@ -12,7 +13,7 @@ use crate::number::{counted, two_digits, unsigned_zero};
 
 /// The whole assessment, expanded uncertainties for a probability of `coverage`; the correlations if they are wanted.
 pub fn assessment_text(assessment: &Assessment, coverage: f64, correlations: bool) -> Screen {
-    let Assessment { model, fit, cleaned, budget, validity, patterns, prediction, .. } = assessment;
+    let Assessment { model, fit, cleaned, budget, validity, patterns, prediction, objections, .. } = assessment;
     let mut screen = Screen::default();
     if let Some((after, left_out)) = cleaned {
         outliers_text(&mut screen, model, [fit, after], left_out);
@@ -30,6 +31,9 @@ pub fn assessment_text(assessment: &Assessment, coverage: f64, correlations: boo
         Some(curves) => prediction_table(&mut screen, curves),
         None => screen.head("PREDICTION", "none: not all parameters of the instrument are determined"),
     }
+    screen.gap();
+    let used = cleaned.as_ref().map_or(fit, |(after, _)| after);
+    screen.add(verdict_text(objections, used.degrees_of_freedom > 0));
     screen
 }
 

@@ -6,8 +6,9 @@ use centrical::uncertainty::{
 use centrical::{Experiment, Fit, Group, MeasurementModel, Source, Termination};
 use serde::Serialize;
 
+use super::documents::ObjectionName;
 use super::json;
-use super::result::{BudgetSummary, Program, ValiditySummary};
+use super::result::{BudgetSummary, Program, ResultObjection, ValiditySummary};
 use crate::error::Error;
 
 /// Name of the schema's present version.
@@ -44,6 +45,10 @@ pub struct AssessmentReport {
     pub plateaus: Vec<AssessedPlateau>,
     /// Uncertainty of a compensated reading along each instrument axis; null while a coefficient is not determined.
     pub prediction: Option<[Vec<CompensatedUncertainty>; 3]>,
+    /// Whether the calibration that the above rests on is acceptable.
+    pub acceptable: bool,
+    /// The objections to it.
+    pub objections: Vec<ObjectionName>,
 }
 
 /// How a fit went.
@@ -154,12 +159,13 @@ pub(crate) struct Assessed<'a> {
     pub validity: &'a Validity,
     pub patterns: &'a [Pattern],
     pub prediction: Option<&'a [Vec<CurvePoint>; 3]>,
+    pub objections: &'a [ResultObjection],
 }
 
 impl AssessmentReport {
     /// The assessment of a session of that title, expanded uncertainties for a probability of `coverage`.
     pub(crate) fn of(assessed: &Assessed, title: &str, coverage: f64, scaled_by_residuals: bool) -> Self {
-        let Assessed { model, fit, cleaned, budget, validity, patterns, prediction } = *assessed;
+        let Assessed { model, fit, cleaned, budget, validity, patterns, prediction, objections } = *assessed;
         let (experiment, parameters) = (model.experiment(), model.parameters());
         let count = parameters.len();
         let used = cleaned.map_or(fit, |(without, _)| without);
@@ -187,6 +193,8 @@ impl AssessmentReport {
             validity: ValiditySummary::new(experiment, validity, patterns),
             plateaus: validity.plateaus.iter().map(|check| AssessedPlateau::of(experiment, check)).collect(),
             prediction: prediction.map(|curves| curves.each_ref().map(|curve| curve.iter().map(Into::into).collect())),
+            acceptable: objections.is_empty(),
+            objections: objections.iter().map(Into::into).collect(),
         }
     }
 

@@ -4,8 +4,8 @@ use centrical::uncertainty::{Budget, Compensated, CurvePoint, Pattern, Validity}
 use centrical::{Calibration, Data, Fit, FitError, MeasurementModel, Observation, OnProgress, linear};
 use nalgebra::{DMatrix, Vector3};
 
-use super::calibrate::Problem;
-use crate::document::{Assessed, AssessmentReport};
+use super::calibrate::{Problem, as_result};
+use crate::document::{Assessed, AssessmentReport, ResultObjection};
 use crate::error::Error;
 use crate::experiment::Session;
 
@@ -45,6 +45,8 @@ pub struct Assessment {
     pub patterns: Vec<Pattern>,
     /// Uncertainty of a compensated reading along each instrument axis; `None` while a coefficient is not determined.
     pub prediction: Option<[Vec<CurvePoint>; 3]>,
+    /// The objections to the calibration that the above rests on, as [`calibrate`](super::calibrate()) has them.
+    pub objections: Vec<ResultObjection>,
 }
 
 /// Reads, reduces, fits and assesses a session. `progress` is called with the number of bytes read, from any thread; most
@@ -53,8 +55,34 @@ pub struct Assessment {
 /// # Errors
 /// [`Error`] naming the file, the place, what was found and what was expected.
 pub fn assess(session: &Session, request: &AssessmentRequest, progress: OnProgress) -> Result<Assessment, Error> {
-    let problem = Problem::as_stated(session, progress)?;
-    of_problem(problem, &session.title, request).map_err(|source| Error::fit(&session.file, source))
+    let Problem { session, model, mut reduced } = Problem::as_stated(session, progress)?;
+    let failed = |source: FitError| Error::fit(&session.file, source);
+    let all = Data::new(&model, reduced.observations()).map_err(failed)?;
+    let whole = Calibration::exact(&all).map_err(failed)?;
+    let cleaned = request.without_outliers.map(|alpha| all.without_outliers(alpha)).transpose().map_err(failed)?;
+    let without = cleaned.as_ref().map(|cleaned| Calibration::exact(&cleaned.data)).transpose().map_err(failed)?;
+    let left_out = cleaned.as_ref().map_or(&[][..], |cleaned| &cleaned.left_out);
+    let used = without.as_ref().unwrap_or(&whole);
+    reduced.held_out = left_out.iter().map(|(set_point, _)| *set_point).collect();
+    let objections = as_result(used, &session, &reduced, progress)?.objections();
+    let (budget, validity, patterns) = checks(used, request).map_err(failed)?;
+    let range = request.range.unwrap_or_else(|| highest(used.data()));
+    let prediction = prediction(&model, used.fit(), &budget, range);
+    let cleaned = without.as_ref().map(|without| (without.fit().clone(), left_out.to_vec()));
+    let fit = whole.into_fit();
+    let (title, scaled_by_residuals) = (session.title, request.scale_by_residuals);
+    Ok(Assessment {
+        title,
+        scaled_by_residuals,
+        model,
+        fit,
+        cleaned,
+        budget,
+        validity,
+        patterns,
+        prediction,
+        objections,
+    })
 }
 
 impl Assessment {
@@ -68,30 +96,16 @@ impl Assessment {
             validity: &self.validity,
             patterns: &self.patterns,
             prediction: self.prediction.as_ref(),
+            objections: &self.objections,
         };
         AssessmentReport::of(&assessed, &self.title, coverage, self.scaled_by_residuals)
     }
 }
 
-fn of_problem(problem: Problem, title: &str, request: &AssessmentRequest) -> Result<Assessment, FitError> {
-    let Problem { model, reduced } = problem;
-    let all = Data::new(&model, reduced.observations())?;
-    let whole = Calibration::exact(&all)?;
-    let cleaned = request.without_outliers.map(|alpha| all.without_outliers(alpha)).transpose()?;
-    let without = cleaned.as_ref().map(|cleaned| Calibration::exact(&cleaned.data)).transpose()?;
-    let used = without.as_ref().unwrap_or(&whole);
-    let mut budget = used.budget()?;
-    if request.scale_by_residuals {
-        budget = budget.scaled_by_residuals(used.fit());
-    }
-    let (validity, patterns) = (used.validity()?, used.patterns()?);
-    let range = request.range.unwrap_or_else(|| highest(used.data()));
-    let prediction = prediction(&model, used.fit(), &budget, range);
-    let cleaned = cleaned.as_ref().zip(without.as_ref());
-    let cleaned = cleaned.map(|(cleaned, without)| (without.fit().clone(), cleaned.left_out.clone()));
-    let fit = whole.into_fit();
-    let (title, scaled_by_residuals) = (title.to_owned(), request.scale_by_residuals);
-    Ok(Assessment { title, scaled_by_residuals, model, fit, cleaned, budget, validity, patterns, prediction })
+fn checks(used: &Calibration, request: &AssessmentRequest) -> Result<(Budget, Validity, Vec<Pattern>), FitError> {
+    let budget = used.budget()?;
+    let budget = if request.scale_by_residuals { budget.scaled_by_residuals(used.fit()) } else { budget };
+    Ok((budget, used.validity()?, used.patterns()?))
 }
 
 /// Highest nominal specific force of the plateaus [m/s^2].

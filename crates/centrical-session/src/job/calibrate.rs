@@ -12,6 +12,8 @@ use crate::reduced::Reduced;
 /// What is fitted: the plateau means of a session and the model of them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Problem {
+    /// The session, with the schedule and the uncertainties that its readings show.
+    pub session: Session,
     /// The model.
     pub model: MeasurementModel,
     /// The means and the files they come from.
@@ -26,7 +28,7 @@ impl Problem {
     /// [`Error`] naming the file, the place, what was found and what was expected.
     pub fn of(session: &Session, progress: OnProgress) -> Result<Self, Error> {
         let (session, reduced) = reduce(session, progress)?;
-        Self::reduced(&session, reduced)
+        Self::reduced(session.into_owned(), reduced)
     }
 
     /// The same with the uncertainties that its calibration states: of rests alone with what the residuals cannot exclude.
@@ -36,18 +38,18 @@ impl Problem {
     pub fn as_stated(session: &Session, progress: OnProgress) -> Result<Self, Error> {
         let (session, reduced) = reduce(session, progress)?;
         if session.experiment.has_arm() {
-            return Self::reduced(&session, reduced);
+            return Self::reduced(session.into_owned(), reduced);
         }
         let (_, between) = by_noise(&session, &reduced, Method::Exact, progress, between_rests(progress))?;
         let (session, reduced) = match between {
             Some(between) => with(&between, &session, &reduced),
             None => (session.into_owned(), reduced),
         };
-        Self::reduced(&session, reduced)
+        Self::reduced(session, reduced)
     }
 
-    fn reduced(session: &Session, reduced: Reduced) -> Result<Self, Error> {
-        Ok(Self { model: reduced.model(session)?, reduced })
+    fn reduced(session: Session, reduced: Reduced) -> Result<Self, Error> {
+        Ok(Self { model: reduced.model(&session)?, session, reduced })
     }
 }
 
@@ -167,12 +169,27 @@ fn by_noise<T>(
     };
     advance(progress, 0)?;
     let calibration = calibration.map_err(failed)?;
-    let result = CalibrationResult::from(&calibration, session, reduced, progress).map_err(failed)?;
-    let result = match RecordFindings::stated(session)? {
-        Some(findings) => findings.added_to(result),
-        None => result,
-    };
-    advance(progress, 0)?;
+    let result = as_result(&calibration, session, reduced, progress)?;
     let beside = beside(&calibration, &result).map_err(failed)?;
     Ok((result, beside))
+}
+
+/// A calibration of a session that is reduced, with what its records show beside their means.
+///
+/// # Errors
+/// As [`calibrate_reduced`].
+pub(super) fn as_result(
+    calibration: &Calibration,
+    session: &Session,
+    reduced: &Reduced,
+    progress: OnProgress,
+) -> Result<CalibrationResult, Error> {
+    let result = CalibrationResult::from(calibration, session, reduced, progress);
+    let result = result.map_err(|source| Error::fit(&session.file, source))?;
+    let findings = RecordFindings::stated(session)?;
+    advance(progress, 0)?;
+    Ok(match findings {
+        Some(findings) => findings.added_to(result),
+        None => result,
+    })
 }

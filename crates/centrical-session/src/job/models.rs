@@ -13,6 +13,6 @@ use crate::experiment::Session;
 /// # Errors
 /// [`Error`] naming the file, the place, what was found and what was expected.
 pub fn select_model(session: &Session, progress: OnProgress) -> Result<Selection, Error> {
-    let Problem { model, reduced } = Problem::of(session, progress)?;
+    let Problem { model, reduced, .. } = Problem::of(session, progress)?;
     select_beside(&model, &reduced.observations(), &|_| progress(0)).map_err(|source| Error::fit(&session.file, source))
 }

@@ -44,7 +44,7 @@ impl MonteCarloCase {
     /// # Errors
     /// [`Error`] naming the file, the place, what was found and what was expected.
     pub fn measured(session: &Session, progress: OnProgress) -> Result<Self, Error> {
-        let Problem { model, reduced } = Problem::as_stated(session, progress)?;
+        let Problem { model, reduced, .. } = Problem::as_stated(session, progress)?;
         let (observations, file) = (reduced.observations(), session.file.clone());
         let truth = estimated(&model, observations.clone()).map_err(|source| Error::fit(&file, source))?;
         Ok(Self { model, truth, file, observations })
