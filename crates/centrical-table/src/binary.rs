@@ -4,6 +4,7 @@ mod arrays;
 mod arrow;
 mod catch_panic;
 mod cells;
+mod checksums;
 mod columnar;
 #[cfg(feature = "hdf5")]
 mod hdf5;
@@ -18,6 +19,7 @@ mod typed;
 #[cfg(feature = "xlsx")]
 pub(crate) use self::catch_panic::catch_panic;
 pub use self::cells::{Cell, Kind, TypedColumn};
+pub use self::checksums::{CHECKSUMS, Checksums};
 pub(crate) use self::columnar::ColumnReader;
 pub use self::typed::TypedReader;
 use crate::column::Field;

@@ -141,6 +141,36 @@ fn a_damaged_part_and_a_newer_one_are_errors_that_name_the_file() {
     assert!(message(&newer).contains("found schema \"centrical-rows/3\", expected schema \"centrical-rows/2\""));
 }
 
+/// A bit that flips anywhere in a part is found, or it changes nothing that is read.
+#[test]
+fn a_flipped_bit_is_refused_or_changes_nothing() {
+    let folder = TempDir::new().unwrap();
+    let store = Store::create(folder.path()).unwrap();
+    let rows: Vec<Row> = (0..6).map(|n| row(n, 4)).collect();
+    store.add(rows.clone()).unwrap();
+    let part = fs::read_dir(folder.path().join("rows")).unwrap().next().unwrap().unwrap().path();
+    let whole = fs::read(&part).unwrap();
+    let mut refused = 0;
+    for at in (0..whole.len()).step_by(3) {
+        let mut bytes = whole.clone();
+        bytes[at] ^= 1 << (at % 8);
+        fs::write(&part, &bytes).unwrap();
+        let selection = Selection { depth: Depth::Whole, ..Selection::default() };
+        let read = store.rows(selection, &unwatched).and_then(Iterator::collect::<Result<Vec<Row>, _>>);
+        match read {
+            Ok(mut read) => {
+                read.sort_by(|a, b| a.key.cmp(&b.key));
+                assert!(read == rows, "byte {at} of {}", whole.len());
+            }
+            Err(error) => {
+                assert!(error.to_string().contains(".parquet"), "{error}");
+                refused += 1;
+            }
+        }
+    }
+    assert!(refused > whole.len() / 3 / 2, "{refused} of {}", whole.len() / 3);
+}
+
 /// Each edit of a row, and the column and the words of the error.
 #[test]
 fn rows_that_contradict_themselves_are_refused() {

@@ -10,6 +10,7 @@ use parquet::file::metadata::{ParquetMetaData, ParquetMetaDataReader};
 
 use super::catch_panic::catch_panic;
 use super::cells::{Cell, Kind, TypedColumn};
+use super::checksums::{CHECKSUMS, Checksums};
 use super::parquet_pages::{Checked, Pages};
 use crate::error::{Error, Place};
 use crate::source::Source;
@@ -22,6 +23,8 @@ pub struct TypedReader {
     file: PathBuf,
     pages: Arc<Pages>,
     metadata: ParquetMetaData,
+    /// None of a table that another program wrote, or an older one.
+    checksums: Option<Checksums>,
 }
 
 impl TypedReader {
@@ -33,7 +36,19 @@ impl TypedReader {
         let source = Source::open(file, expected)?;
         let metadata = catch_panic(|| ParquetMetaDataReader::new().parse_and_finish(&source));
         let metadata = metadata.map_err(|error| damaged(file, Place::Whole, error.as_ref(), expected))?;
-        Ok(Self { file: file.to_owned(), pages: Arc::new(Pages(source)), metadata })
+        let mut table = Self { file: file.to_owned(), pages: Arc::new(Pages(source)), metadata, checksums: None };
+        if let Some(text) = table.note(CHECKSUMS) {
+            let kept = Checksums::kept(text, table.names(), table.groups() * table.names().count());
+            let error = general("columns or row groups other than those that were written".to_owned());
+            table.checksums = Some(kept.ok_or_else(|| damaged(file, Place::Whole, Some(&error), expected))?);
+        }
+        Ok(table)
+    }
+
+    /// The names of its columns.
+    fn names(&self) -> impl Iterator<Item = &str> {
+        let columns = self.metadata.file_metadata().schema_descr().columns();
+        columns.iter().filter_map(|column| column.path().parts().first()).map(String::as_str)
     }
 
     /// The text that the footer keeps under a key.
@@ -62,14 +77,22 @@ impl TypedReader {
     /// # Errors
     /// [`Error`] naming the column if its pages are damaged or of another kind.
     pub fn read(&self, group: usize, column: TypedColumn) -> Result<Option<Vec<Cell>>, Error> {
-        let columns = self.metadata.file_metadata().schema_descr().columns();
-        let Some(number) = columns.iter().position(|c| c.path().parts().first().is_some_and(|p| p == column.name))
-        else {
-            return Ok(None);
-        };
-        let read = catch_panic(|| self.cells(group, number, column.kind));
+        let Some(number) = self.names().position(|name| name == column.name) else { return Ok(None) };
+        let read = catch_panic(|| self.checked(group, number, column.kind));
         let place = Place::Column(format!("{}, row group {}", column.name, group + 1));
         read.map(Some).map_err(|error| damaged(&self.file, place, error.as_ref(), "a whole part of a store"))
+    }
+
+    /// The cells as they were written.
+    fn checked(&self, group: usize, number: usize, kind: Kind) -> ParquetResult<Vec<Cell>> {
+        let cells = self.cells(group, number, kind)?;
+        let chunk = group * self.names().count() + number;
+        match &self.checksums {
+            Some(checksums) if !checksums.hold(chunk, kind, cells.iter()) => {
+                Err(general("its cells do not give the CRC-32 written with them".to_owned()))
+            }
+            _ => Ok(cells),
+        }
     }
 
     fn cells(&self, group: usize, number: usize, kind: Kind) -> ParquetResult<Vec<Cell>> {

@@ -14,7 +14,7 @@ use parquet::file::writer::{SerializedFileWriter, SerializedRowGroupWriter};
 use parquet::schema::types::{ColumnPath, Type};
 
 use super::beside::Beside;
-use crate::binary::{Cell, Kind, TypedColumn};
+use crate::binary::{CHECKSUMS, Cell, Checksums, Kind, TypedColumn};
 use crate::error::Error;
 
 /// Writes a table of several kinds of columns beside the file, and renames at the end: whoever looks sees the whole table or none. It is
@@ -23,6 +23,7 @@ pub struct TypedWriter {
     file: PathBuf,
     beside: Beside,
     columns: Vec<TypedColumn>,
+    checksums: Checksums,
     table: SerializedFileWriter<BufWriter<File>>,
 }
 
@@ -43,7 +44,8 @@ impl TypedWriter {
         let (beside, output) = Beside::create(file).map_err(failed)?;
         let table =
             begin(BufWriter::new(output), columns, notes).map_err(|error| failed(super::parquet::failed(error)))?;
-        Ok(Self { file: file.to_owned(), beside, columns: columns.to_vec(), table })
+        let checksums = Checksums::of_names(columns.iter().map(|column| column.name));
+        Ok(Self { file: file.to_owned(), beside, columns: columns.to_vec(), checksums, table })
     }
 
     /// Adds a row group: rows of one cell a column. A cell of another kind than its column is nothing, or an empty list.
@@ -51,11 +53,13 @@ impl TypedWriter {
     /// # Errors
     /// [`Error::Io`] if it cannot be written.
     pub fn write_group(&mut self, rows: &[Vec<Cell>]) -> Result<(), Error> {
-        let columns = &self.columns;
+        let (columns, checksums) = (&self.columns, &mut self.checksums);
         let mut write = || {
             let mut group = self.table.next_row_group()?;
             for (n, column) in columns.iter().enumerate() {
-                write_column(&mut group, column.kind, rows.iter().filter_map(|row| row.get(n)))?;
+                let cells = || rows.iter().filter_map(|row| row.get(n));
+                write_column(&mut group, column.kind, cells())?;
+                checksums.push(column.kind, cells());
             }
             group.close().map(|_| ())
         };
@@ -69,7 +73,8 @@ impl TypedWriter {
     ///
     /// # Errors
     /// [`Error::Io`] if it cannot be written.
-    pub fn finish(self) -> Result<(), Error> {
+    pub fn finish(mut self) -> Result<(), Error> {
+        self.table.append_key_value_metadata(KeyValue::new(CHECKSUMS.to_owned(), self.checksums.text()));
         let output = self.table.into_inner().map_err(super::parquet::failed);
         let synced =
             output.and_then(|output| output.into_inner().map_err(std::io::IntoInnerError::into_error)?.sync_all());
