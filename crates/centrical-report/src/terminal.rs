@@ -4,6 +4,7 @@ mod alarm;
 mod assess;
 mod axes;
 mod calibrate;
+mod chance;
 mod compare;
 mod compensate;
 mod drift;

@@ -26,11 +26,13 @@ pub use self::calibrate::{calibrate, calibrate_reduced, calibrate_without};
 pub use self::compare::{ComparisonRequest, compare_results};
 pub use self::compensate::{Compensated, CompensationRequest, FirstOutside, compensate, compensate_record};
 pub use self::history::{
-    Calibrated, CalibratedParameter, ChartLimits, ChartRequest, ComparedUnits, NoChart, ParameterLimits, RuleSet,
+    Calibrated, CalibratedParameter, ChartLimits, ChartRequest, ComparedUnits, NoChart, ParameterLimits, Past, RuleSet,
     UnitHistoryRequest, UnitsHistoryRequest, by_unit, chart, history_up_to, read_batches, read_calibrations,
     read_limits, station_history, unit_history, unit_means, units_history,
 };
-pub use self::history::{add_result, add_results, check_store, collect_results, list_store, spelling, today};
+pub use self::history::{
+    add_result, add_results, check_store, collect_results, list_store, refuse_date, spelling, today,
+};
 pub use self::init::{Draft, FillIn, InitRequest, init, time_column};
 pub use self::models::select_model;
 pub use self::montecarlo::{MonteCarloCase, MonteCarloRequest};

@@ -82,11 +82,11 @@ pub use job::{
     WatchProgress, WatchRequest, add_result, add_results, assess, calibrate, calibrate_reduced, calibrate_series,
     calibrate_without, check_store, collect_results, compare_results, compensate, compensate_record, init, list_store,
     noise_of, noise_of_plateau, plan, read_plan, read_planning, reduce, reduce_recorded, reduce_without_inputs,
-    select_model, settings_schema, simulate_session, spelling, subject, subject_of, time_column, today, tumble, watch,
-    write_reduced,
+    refuse_date, select_model, settings_schema, simulate_session, spelling, subject, subject_of, time_column, today,
+    tumble, watch, write_reduced,
 };
 pub use job::{
-    Calibrated, CalibratedParameter, ChartLimits, ChartRequest, ComparedUnits, NoChart, ParameterLimits, RuleSet,
+    Calibrated, CalibratedParameter, ChartLimits, ChartRequest, ComparedUnits, NoChart, ParameterLimits, Past, RuleSet,
     UnitHistoryRequest, UnitsHistoryRequest, by_unit, chart, history_up_to, read_batches, read_calibrations,
     read_limits, station_history, unit_history, unit_means, units_history,
 };

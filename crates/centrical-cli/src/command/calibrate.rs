@@ -7,7 +7,7 @@ use centrical_report::{
 };
 use centrical_session::{
     CalibrationResult, Error, Method, Place, PlateauName, ResultObjection, Session, Store, add_result,
-    calibrate_without, claim_folder, refuse_inputs,
+    calibrate_without, claim_folder, refuse_date, refuse_inputs,
 };
 
 use crate::command::report::{Documents, is_within_limits};
@@ -73,7 +73,10 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let laboratory = arguments.documents.laboratory.as_deref();
     let inputs = [session.files(), laboratory.into_iter().collect()].concat();
     refuse_inputs(&outputs(out, file.as_deref()), &inputs)?;
-    arguments.store.as_deref().map_or(Ok(()), |store| Store::refuse_inputs(store, &inputs))?;
+    if let Some(store) = arguments.store.as_deref() {
+        Store::refuse_inputs(store, &inputs)?;
+        refuse_date(&session.file, &session.date)?;
+    }
     if out.is_none() {
         file.as_deref().map_or(Ok(()), |file| refuse_another_unit(file, &session))?;
     }

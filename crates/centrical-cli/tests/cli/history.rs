@@ -295,7 +295,7 @@ fn mistakes_in_a_store_are_found() {
     add("d", "TA-2", "2021-03-04", Some("d"));
     add("e", "TA-3", "2021-03-04", Some("d"));
     add("f", "TA-4", "2999-03-04", Some("f"));
-    add("g", "TA-5", "March", Some("e"));
+    add("g", "TA-5", "", Some("e"));
     let listed = list(folder.path(), &["store"]);
     let key = |title: &str| {
         let found = listed.iter().find(|calibration| calibration["title"] == title).unwrap();

@@ -316,3 +316,82 @@ fn a_last_calibration_with_an_objection_is_named() {
     fs::remove_dir_all(results.path().join("3")).unwrap();
     assert_eq!(results.run(&["unit", ".", "--limit", "1 m/s^2"]).0, 0);
 }
+
+/// A due date is held against the day that is asked for: today, or another.
+#[test]
+fn a_due_date_that_has_passed_is_overdue() {
+    let results = Results::new();
+    for n in 0..4 {
+        results.add(&n.to_string(), "0001", &format!("201{n}-03-01"), |result| {
+            let bias = result["parameters"].as_array().unwrap().iter().find(|p| p["name"] == "df_1").unwrap();
+            let value = bias["value"].as_f64().unwrap() + 0.1 * f64::from(n);
+            set(result, "df_1", value);
+        });
+    }
+    let unit = ["unit", ".", "--limit", "100 mg"];
+    let due = results.document(&unit)["due"]["date"].as_str().unwrap().to_owned();
+    assert!(due.as_str() > "2013-03-01" && due.as_str() < "2026-01-01", "{due}");
+    let (code, text, _) = results.run(&unit);
+    assert!(text.starts_with(&format!("OVERDUE  since {due}")) && code == 1, "{text}");
+    let (code, text, _) = results.run(&[&unit[..], &["--on", "2013-03-02"]].concat());
+    assert!(text.starts_with(&format!("DUE  {due}")) && code == 0, "{text}");
+    assert!(text.contains("forecast"), "{text}");
+    // Without a limit there is nothing that fails: scatter and drift are what is measured.
+    assert_eq!(results.run(&["unit", "."]).0, 0);
+}
+
+/// One date that is no day does not stop a plant: it is refused at the door, and left out by name where it is in a store already.
+#[test]
+fn a_date_that_is_no_day_is_refused_and_left_out() {
+    let results = Results::new();
+    for n in 0..3 {
+        results.add(&format!("good/{n}"), "0001", &format!("202{n}-03-01T23:30:00+03:00"), |_| {});
+    }
+    results.add("bad", "0001", "05.10.2026", |_| {});
+    let (code, _, message) = results.run(&["add", "store", "good", "bad"]);
+    let expected = "session, date: found \"05.10.2026\", expected a day such as 2026-10-05";
+    assert!(code == 2 && message.contains("bad/result.json") && message.contains(expected), "{message}");
+    results.add("none", "0001", "", |_| {});
+    assert_eq!(results.run(&["add", "store", "good", "none"]).0, 0);
+    let (code, text, message) = results.run(&["unit", "store"]);
+    assert!(code == 0 && text.contains("2022-03-01") && text.contains("3 calibrations"), "{text}");
+    assert!(message.starts_with("NO DAY  ") && message.contains("left out"), "{message}");
+    assert_eq!(results.run(&["page", "store", "--out", "pages"]).0, 0);
+    let index = fs::read_to_string(results.path().join("pages/index.html")).unwrap();
+    assert!(index.contains("(no day: in no history)"));
+}
+
+/// A session far beyond the scatter of the others is named, as are two with the same values and another spelling of the serial number.
+#[test]
+fn sessions_that_may_not_be_meant_are_named() {
+    let results = Results::new();
+    for n in 0..6 {
+        let off = if n == 2 { 1.0 } else { 1e-3 * f64::from(n * 7 % 5 - 2) };
+        results.add(&n.to_string(), "0001", &format!("202{n}-03-01"), |result| set(result, "df_1", off));
+    }
+    results.add("again", "0001", "2025-03-02", |result| set(result, "df_1", 1e-3 * f64::from(5 * 7 % 5 - 2)));
+    results.add("other", "00-01", "2025-04-01", |_| {});
+    let (_, text, message) = results.run(&["unit", ".", "--serial", "0001"]);
+    assert!(text.contains("DEVIATES  2022-03-01"), "{text}");
+    assert!(text.contains("TWICE  2025-03-01"), "{text}");
+    assert!(message.contains("SPELLING  calibrations of serial \"00-01\" are not taken"), "{message}");
+}
+
+/// The table of batches of a spreadsheet begins with a byte order mark; means of batches that differ are shown.
+#[test]
+fn batches_that_differ_are_shown_with_their_means() {
+    let results = Results::new();
+    for n in 0..8 {
+        let batch = if n < 4 { 0.0 } else { 0.1 };
+        results.add(&n.to_string(), &n.to_string(), "2024-03-01", |result| {
+            set(result, "df_1", batch + 1e-3 * f64::from(n * 7 % 5 - 2));
+        });
+    }
+    let batches = "\u{feff}serial,batch\n0,east\n1,east\n2,east\n3,east\n4,west\n5,west\n6,west\n7,west\n";
+    fs::write(results.path().join("batches.csv"), batches).unwrap();
+    let (code, text, message) = results.run(&["units", ".", "--batches", "batches.csv"]);
+    assert!(code == 1 && !text.contains("NO UNIT"), "{text}{message}");
+    let row =
+        |batch: &str| text.lines().any(|line| line.contains("df_1") && line.contains(batch) && line.contains('±'));
+    assert!(text.contains("BATCHES  mean") && row("east") && row("west"), "{text}");
+}

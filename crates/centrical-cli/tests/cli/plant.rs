@@ -336,7 +336,7 @@ fn a_calibration_with_fewer_parameters_is_left_out() {
         fs::write(result, document.to_string()).unwrap();
     };
     without(&folder.join("plant/0001/1/result.json"), "G1_");
-    let ask = ["unit", "plant/0001", "--limit", "100 mg"];
+    let ask = ["unit", "plant/0001", "--limit", "100 mg", "--on", "2023-03-02"];
     let (unit, code) = history(folder, &ask);
     let count = |key: &str| unit[key].as_array().unwrap().len();
     assert_eq!((count("sessions"), count("left_out"), code), (3, 1, 0));

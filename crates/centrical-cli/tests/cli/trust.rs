@@ -195,7 +195,7 @@ fn stated_uncertainties_are_in_the_result() {
     let shift = with["parameters"].as_array().unwrap().iter().position(|p| p["name"] == "dR_1[A]").unwrap();
     assert!(with["parameters"][shift]["standard_uncertainty"].as_f64().unwrap() > 19e-6);
     let compared = text(&copy.run(&["compare", "without.json", "result.json"]));
-    assert!(compared.contains("probability 1.0e0"), "{compared}");
+    assert!(compared.contains("probability 1.00"), "{compared}");
 }
 
 /// A plateau that is grossly off stands out by name, and the calibration is not acceptable; held out it is.
@@ -212,6 +212,13 @@ fn an_outlying_plateau_is_named() {
     let cleaned = text(&copy.run(&["assess", copy.session().to_str().unwrap(), "--without-outliers"]));
     assert!(cleaned.contains("OUTLIERS  1 plateau left out\n  mounting 5, plateau 9"), "{cleaned}");
     assert!(cleaned.contains("estimates that moved most"), "{cleaned}");
+    // The verdict is that of the fit that is assessed.
+    assert!(cleaned.ends_with("ACCEPTABLE  no check raised an objection\n"), "{cleaned}");
+    let assessed = copy.run(&["assess", copy.session().to_str().unwrap(), "--json"]);
+    assert_eq!(assessed.status.code(), Some(1));
+    let document: Value = serde_json::from_slice(&assessed.stdout).unwrap();
+    let objections = document["objections"].as_array().unwrap();
+    assert!(document["acceptable"] == false && objections.contains(&"outlying".into()), "{objections:?}");
 }
 
 /// Two calibrations of one unit agree with themselves; of two units they do not, and the exit code says so.

@@ -40,6 +40,7 @@ def history(
     station: str | None = None,
     check: bool = False,
     limit: Quantity | None = None,
+    on: str | None = None,
     until: str | None = None,
     confidence: float = 0.95,
     trend: bool = True,
@@ -63,6 +64,8 @@ def history(
         Of a list: ``doubts`` says what may not be meant, such as one unit under two names, or a copy that is missing.
     limit
         Of a unit: largest error of a compensated reading [m/s^2], for the due date.
+    on
+        Of a unit: day on which that limit is to hold, for ``is_within``; today by default.
     until
         Of a unit: day of the forecasts, ``"2027-10-05"``; a year after the last calibration by default.
     confidence
@@ -93,7 +96,7 @@ def history(
     chosen = (model, serial, station)
     given: dict[str, dict[str, object]] = {
         "list": {"check": check},
-        "unit": {"limit": limit, "until": until, "confidence": confidence != 0.95, "trend": not trend, "together": together, "out": out},
+        "unit": {"limit": limit, "on": on, "until": until, "confidence": confidence != 0.95, "trend": not trend, "together": together, "out": out},
         "units": {"laboratory": laboratory, "batches": batches},
         "station": {},
     }
@@ -109,7 +112,7 @@ def history(
             raise ValueError(f"results: found {len(stores)}, expected one store for a list")
         return Document(_native.history_list(stores[0], chosen, check))
     if of == "unit":
-        return Document(_native.history_unit(paths(results), chosen, limit, until, confidence, trend, together, out))
+        return Document(_native.history_unit(paths(results), chosen, limit, on, until, confidence, trend, together, out))
     if of == "units":
         return Document(_native.history_units(paths(results), chosen, laboratory, batches))
     return Document(_native.history_station(paths(results), chosen))

@@ -135,6 +135,7 @@ def history_unit(
     results: Sequence[_Path],
     chosen: _Chosen,
     limit: float | str | None,
+    on: str | None,
     until: str | None,
     confidence: float,
     trend: bool,

@@ -1,19 +1,35 @@
 //! `history`: a store of calibrations, and what many of them say.
 
+use std::ffi::CString;
 use std::path::PathBuf;
 
 use centrical_report::{PagesRequest, chart_plots, unit_history_plots, write_history_pages, write_plots};
 use centrical_session::{
-    Added, ChartLimits, ChartRequest, ComparedUnits, Date, Depth, Dimension, Error, Failure, ParameterLimits, Place,
-    Row, RuleSet, Selection, Store, UnitHistoryRequest, UnitsHistoryRequest, add_result, add_results, advance, by_unit,
-    chart, check_store, list_store, read_batches, read_calibrations, read_limits, station_history, today, unit_history,
-    units_history,
+    Added, Calibrated, ChartLimits, ChartRequest, ComparedUnits, Date, Depth, Dimension, Error, Failure, OnProgress,
+    ParameterLimits, Past, Place, Row, RuleSet, Selection, Store, UnitHistoryRequest, UnitsHistoryRequest, add_result,
+    add_results, advance, by_unit, chart, check_store, list_store, read_batches, read_calibrations, read_limits,
+    station_history, today, unit_history, units_history,
 };
+use pyo3::exceptions::PyUserWarning;
 use pyo3::prelude::*;
 
 use crate::progress::{self, Shown};
 use crate::result::CalibrationResult;
 use crate::words::{Amount, one_of, refused};
+
+/// The calibrations in the order of time, with a warning for those that have no day for a date.
+fn read(results: &[PathBuf], selection: &Selection, progress: OnProgress) -> Result<Vec<Calibrated>, Error> {
+    let Past { calibrations, undated } = read_calibrations(results, selection, progress)?;
+    let expected = "a day such as 2026-10-05";
+    for calibration in undated {
+        let words = format!("{calibration}, expected {expected}: left out").replace('\0', " ");
+        let words = CString::new(words).unwrap_or_default();
+        // A filter may turn a warning into an error.
+        Python::attach(|py| PyErr::warn(py, &py.get_type::<PyUserWarning>(), &words, 1))
+            .map_err(|_| Error::content(&results[0], Place::Whole, calibration, expected))?;
+    }
+    Ok(calibrations)
+}
 
 /// Model and serial number of the unit, and the station.
 type Chosen = (Option<String>, Option<String>, Option<String>);
@@ -91,6 +107,7 @@ pub fn history_unit(
     results: Vec<PathBuf>,
     chosen: Chosen,
     limit: Option<Amount>,
+    on: Option<String>,
     until: Option<String>,
     confidence: f64,
     trend: bool,
@@ -101,17 +118,18 @@ pub fn history_unit(
         return Err(refused("confidence", format!("found {confidence}, expected a number between 0.5 and 1")));
     }
     let limit = largest_error(limit)?;
-    let day = |day: String| {
-        let refuse = |_| refused("until", format!("found {day:?}, expected a day such as 2026-10-05"));
-        day.parse::<Date>().map_err(refuse)
+    let day = |name: &'static str, day: Option<String>| {
+        let refuse = |day: &str| refused(name, format!("found {day:?}, expected a day such as 2026-10-05"));
+        day.map(|day| day.parse::<Date>().map_err(|_| refuse(&day))).transpose()
     };
-    let request = UnitHistoryRequest { trend, until: until.map(day).transpose()?, limit, coverage: confidence };
+    let on = Some(day("on", on)?.unwrap_or_else(Date::today));
+    let request = UnitHistoryRequest { trend, until: day("until", until)?, limit, on, coverage: confidence };
     let results = given(results)?;
     progress::run(py, &None, |work| {
         let (model, serial, station) = chosen;
         let read_of = if together { None } else { serial.clone() };
         let selection = selection(Depth::Whole, (model, read_of, station));
-        let units = by_unit(read_calibrations(&results, &selection, &|done| work.advance(done))?);
+        let units = by_unit(read(&results, &selection, &|done| work.advance(done))?);
         let is_meant = |unit: &str| serial.as_deref().is_none_or(|wanted| wanted == unit);
         let (own, others): (Vec<_>, Vec<_>) = units.into_iter().partition(|unit| is_meant(&unit[0].unit_serial));
         let [own] = own.as_slice() else { return Err(missing(&results, "calibrations of one unit")) };
@@ -137,7 +155,7 @@ pub fn history_units(
     let results = given(results)?;
     progress::run(py, &None, |work| {
         let selection = selection(Depth::Errors, chosen);
-        let calibrations = read_calibrations(&results, &selection, &|done| work.advance(done))?;
+        let calibrations = read(&results, &selection, &|done| work.advance(done))?;
         let limits = laboratory.as_deref().map(|file| read_limits(file, &calibrations)).transpose()?;
         let batches = batches.as_deref().map(read_batches).transpose()?;
         let request = UnitsHistoryRequest { limits: limits.unwrap_or_default(), batches: batches.unwrap_or_default() };
@@ -152,7 +170,7 @@ pub fn history_station(py: Python, results: Vec<PathBuf>, chosen: Chosen) -> PyR
     let results = given(results)?;
     progress::run(py, &None, |work| {
         let selection = selection(Depth::Values, chosen);
-        let calibrations = read_calibrations(&results, &selection, &|done| work.advance(done))?;
+        let calibrations = read(&results, &selection, &|done| work.advance(done))?;
         let report = station_history(&calibrations);
         report.ok_or_else(|| missing(&results, "calibrations of the station"))?.to_json()
     })
@@ -182,7 +200,7 @@ pub fn history_chart(
     let results = given(results)?;
     progress::run(py, &None, |work| {
         let selection = selection(Depth::Values, chosen);
-        let calibrations = read_calibrations(&results, &selection, &|done| work.advance(done))?;
+        let calibrations = read(&results, &selection, &|done| work.advance(done))?;
         let report = chart(&calibrations, parameter, ChartRequest { limits, rules, last: None })
             .map_err(|none| Error::content(&results[0], Place::Whole, none.found(), none.expected()))?;
         if let Some(folder) = &out {

@@ -31,9 +31,9 @@ pub(super) fn switch_on(history: &UnitHistoryReport, language: Language) -> Vec<
 pub(crate) fn switch_on_sentence(history: &UnitHistoryReport, language: Language) -> Option<String> {
     let messages = language.messages();
     let worst = history.readings.iter().max_by(|a, b| a.after_switch_on.total_cmp(&b.after_switch_on))?;
-    let [after, between] = [worst.after_switch_on, worst.between].map(|u| micro_g(u, language));
+    let after = micro_g(worst.after_switch_on, language);
     Some(format!(
-        "{} {}: u = {after} {ug}; {} {}, {} {} g; {}: {between} {ug}; {}: {}",
+        "{} {}: u = {after} {ug}; {} {}, {} {} g; {}: {} {ug}; {}: {}",
         messages.switch_on_text,
         messages.after_switch_on,
         messages.newtonometer,
@@ -41,6 +41,7 @@ pub(crate) fn switch_on_sentence(history: &UnitHistoryReport, language: Language
         messages.specific_force,
         force(worst, language),
         messages.between_calibrations,
+        between_with_interval(worst, language),
         messages.calibrations_of_unit,
         calibrations(history, language),
         ug = language.unit("ug"),
@@ -96,21 +97,26 @@ fn readings(history: &UnitHistoryReport, language: Language) -> Table {
         (&after, 0.18, Align::Right),
     ];
     let row = |r: &ReadingHistory| {
-        let [low, high] = r.between_interval.map(|u| micro_g(u, language));
-        // Where the calibrations scatter less than nearly all would that state such uncertainties, the interval has no length.
-        let interval = match r.between_interval {
-            [_, 0.0] => messages.less_than_stated.to_owned(),
-            _ => format!("{low} … {high}"),
-        };
         vec![
             r.axis.to_string(),
             force(r, language),
             micro_g(r.stated, language),
-            format!("{} ({interval})", micro_g(r.between, language)),
+            between_with_interval(r, language),
             micro_g(r.after_switch_on, language),
         ]
     };
     Table::numbers(columns, history.shown_readings().into_iter().map(row))
+}
+
+/// The standard deviation between calibrations with its interval. Where they scatter less than nearly all would that state such
+/// uncertainties, the interval has no length.
+fn between_with_interval(reading: &ReadingHistory, language: Language) -> String {
+    let [low, high] = reading.between_interval.map(|u| micro_g(u, language));
+    let interval = match reading.between_interval {
+        [_, 0.0] => language.messages().less_than_stated.to_owned(),
+        _ => format!("{low} … {high}"),
+    };
+    format!("{} ({interval})", micro_g(reading.between, language))
 }
 
 fn micro_g(u: f64, language: Language) -> String {

@@ -2,6 +2,7 @@
 
 use centrical_session::{ComparedResultSummary, ComparisonReport, PairComparison, customary, unit_name};
 
+use super::chance::chance;
 use super::screen::{Emphasis, Screen};
 use super::symbols::legend;
 use super::table::{Align, Cell, Table};
@@ -45,7 +46,8 @@ fn one_pair(screen: &mut Screen, report: &ComparisonReport, pair: &PairCompariso
             2,
             &format!(
                 "all {count} together: chi^2 = {chi_squared:.1} with {count} degrees of freedom, probability \
-                 {probability:.1e} if nothing has changed"
+                 {} if nothing has changed",
+                chance(probability)
             ),
         );
     }

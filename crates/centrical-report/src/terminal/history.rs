@@ -1,6 +1,5 @@
 //! Many calibrations as text for the terminal.
 
-mod chance;
 mod chart;
 mod list;
 mod station;

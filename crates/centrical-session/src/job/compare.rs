@@ -53,7 +53,7 @@ fn pair_of(
     let [mut a, b] = pair.map(|n| {
         let (file, result) = results[n];
         // Of a session without a day the day does not count.
-        let date = result.session.date.trim().parse().unwrap_or(Date { year: 1970, month: 1, day: 1 });
+        let date = result.session.date.parse().unwrap_or(Date { year: 1970, month: 1, day: 1 });
         Calibrated::on(date, file.display().to_string(), result.row(&[]), &mut kinds)
     });
     if let (Some(of_first), Some(of_second)) = (&a.output, &b.output) {

@@ -17,7 +17,7 @@ mod superseded;
 mod unit;
 mod units;
 
-pub use self::add::{add_result, add_results};
+pub use self::add::{add_result, add_results, refuse_date};
 pub use self::batches::read_batches;
 pub use self::calibrated::{Calibrated, CalibratedParameter, Kinds, shared_changes};
 pub use self::chart::{ChartLimits, ChartRequest, NoChart, RuleSet, chart};
@@ -26,7 +26,7 @@ pub use self::comparable::ComparedUnits;
 pub use self::earlier::history_up_to;
 pub use self::limits::{ParameterLimits, read_limits};
 pub use self::list::list_store;
-pub use self::read::{by_unit, other_output, read_calibrations};
+pub use self::read::{Past, by_unit, other_output, read_calibrations};
 pub use self::results::collect_results;
 pub use self::station::station_history;
 pub use self::unit::{UnitHistoryRequest, unit_history};

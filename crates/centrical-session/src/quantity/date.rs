@@ -3,6 +3,7 @@
 use std::borrow::Cow;
 use std::fmt;
 use std::str::FromStr;
+use std::time::SystemTime;
 
 use centrical::history::DAYS_IN_YEAR;
 use jiff::civil;
@@ -26,6 +27,12 @@ impl Date {
     fn of(stamp: toml::value::Datetime) -> Option<Self> {
         let date = stamp.date.filter(|_| stamp.time.is_none())?;
         Some(Self { year: date.year, month: date.month, day: date.day })
+    }
+
+    /// Today, of the clock of this machine, in UTC.
+    pub fn today() -> Self {
+        let passed = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).unwrap_or_default();
+        Self { year: 1970, month: 1, day: 1 }.after((passed.as_secs() / 86_400) as f64)
     }
 
     /// The day in years, for the axis of a plot: 2026.76.
@@ -100,8 +107,9 @@ pub struct NotADay;
 impl FromStr for Date {
     type Err = NotADay;
 
-    /// A day of ISO 8601.
+    /// A day of ISO 8601, or the day of a time there.
     fn from_str(text: &str) -> Result<Self, NotADay> {
-        text.parse().ok().and_then(Self::of).ok_or(NotADay)
+        let stamp = text.trim().parse::<toml::value::Datetime>().map_err(|_| NotADay)?;
+        Self::of(toml::value::Datetime { time: None, ..stamp }).ok_or(NotADay)
     }
 }

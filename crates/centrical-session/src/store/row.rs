@@ -167,10 +167,10 @@ impl Row {
     }
 }
 
-/// Days from 1970-01-01 to a day in ISO 8601; `None` if the text is not a day.
+/// Days from 1970-01-01 to a day in ISO 8601; `None` if the text has none.
 pub fn days_since_1970(date: &str) -> Option<i64> {
     let first = Date { year: 1970, month: 1, day: 1 };
-    date.trim().parse::<Date>().ok()?.days_since(first).map(i64::from)
+    date.parse::<Date>().ok()?.days_since(first).map(i64::from)
 }
 
 /// SHA-256, hexadecimal.

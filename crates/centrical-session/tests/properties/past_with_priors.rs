@@ -87,8 +87,8 @@ fn history(rows: Vec<Row>) -> UnitHistoryReport {
     let folder = TempDir::new().unwrap();
     Store::create(folder.path()).unwrap().add(rows).unwrap();
     let selection = Selection { depth: Depth::Whole, ..Selection::default() };
-    let calibrations = read_calibrations(&[folder.path().to_owned()], &selection, &unwatched).unwrap();
-    let request = UnitHistoryRequest { trend: true, until: None, limit: None, coverage: 0.95 };
+    let calibrations = read_calibrations(&[folder.path().to_owned()], &selection, &unwatched).unwrap().calibrations;
+    let request = UnitHistoryRequest::default();
     unit_history(&calibrations, &[], request).unwrap()
 }
 

@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use crate::linalg::least_squares::LeastSquares;
-use crate::statistics::chi_squared_tail;
+use crate::statistics::{chi_squared_tail, f_tail};
 
 /// The estimates of one session.
 #[derive(Debug, Clone, PartialEq)]
@@ -36,6 +36,9 @@ pub struct FarthestSession {
     pub probability: f64,
     /// Probability of so large a chi^2 of the others without it.
     pub probability_of_others: f64,
+    /// Probability that by the scatter of the others any session deviates as much (Bonferroni), as if all of it were in one quantity: F with 1
+    /// and `k - 2` degrees of freedom.
+    pub probability_by_scatter: f64,
 }
 
 /// The joint test of sessions with the same quantities; `None` below two sessions, or where a covariance is not positive definite.
@@ -70,10 +73,15 @@ pub fn sameness(sessions: &[SessionEstimates], shared: &[DMatrix<f64>]) -> Optio
     let probability = chi_squared_tail(chi_squared, degrees_of_freedom);
     // Of two sessions each is as far from the other.
     let farthest = if sessions.len() > 2 { farthest(&equations, &values.rows(0, rows).into_owned(), p) } else { None };
-    let farthest = farthest.map(|(session, fall)| FarthestSession {
-        session,
-        probability: (sessions.len() as f64 * chi_squared_tail(fall, p)).min(1.0),
-        probability_of_others: chi_squared_tail((chi_squared - fall).max(0.0), degrees_of_freedom - p),
+    let any = |chance: f64| (sessions.len() as f64 * chance).min(1.0);
+    let farthest = farthest.map(|(session, fall)| {
+        let (rest, of_others) = ((chi_squared - fall).max(0.0), sessions.len() - 2);
+        FarthestSession {
+            session,
+            probability: any(chi_squared_tail(fall, p)),
+            probability_of_others: chi_squared_tail(rest, degrees_of_freedom - p),
+            probability_by_scatter: any(f_tail(fall * of_others as f64 / rest, 1, of_others)),
+        }
     });
     Some(Sameness { chi_squared, degrees_of_freedom, probability, farthest })
 }

@@ -10,12 +10,11 @@ use centrical_compensate::Monomial;
 use nalgebra::Vector3;
 
 use super::rivals::columns::Columns;
-use super::validity::f_tail;
 use super::verdict::Level;
 use crate::fit::{Calibration, Data, Fit, Termination};
 use crate::model::{ErrorModel, Extension, FitError, Kind, MeasurementModel, Observation, Parameter, Rival};
 use crate::progress::{OnProgress, advance};
-use crate::statistics::chi_squared_tail;
+use crate::statistics::{chi_squared_tail, f_tail};
 
 /// A model that could be meant.
 #[derive(Debug, Clone, PartialEq)]

@@ -9,12 +9,11 @@
 //! readings. Divided by the remaining chi^2 it is an F statistic that does not depend on the scale of the weights.
 
 use nalgebra::{DMatrix, DVector, SymmetricEigen, Vector3};
-use statrs::function::beta::beta_reg;
 
 use crate::fit::{Calibration, Data};
 use crate::model::{FitError, Observation};
 use crate::progress::{OnProgress, advance, unwatched};
-use crate::statistics::chi_squared_tail;
+use crate::statistics::{chi_squared_tail, f_tail};
 
 /// A share of a reading below this is rounding: the reading is not redundant, nothing checks it.
 const REDUNDANT: f64 = 1e-8;
@@ -167,15 +166,6 @@ impl<'m> Data<'m> {
             data = data.without(n)?;
         }
     }
-}
-
-/// Probability of an F statistic of at least `f` with `m` and `n` degrees of freedom; 1 without degrees of freedom.
-pub fn f_tail(f: f64, m: usize, n: usize) -> f64 {
-    if m == 0 || n == 0 || f.is_nan() || f <= 0.0 {
-        return 1.0;
-    }
-    let (m, n) = (m as f64, n as f64);
-    if f.is_infinite() { 0.0 } else { beta_reg(0.5 * n, 0.5 * m, n / (n + m * f)) }
 }
 
 /// Probability that `m` combinations explain that much of chi^2 by chance, where `n` others leave `rest`: the larger of that by the stated

@@ -3,7 +3,10 @@
 use std::collections::BTreeSet;
 use std::path::PathBuf;
 
-use centrical_session::{Calibrated, Depth, Error, Place, Selection, read_calibrations, spelling, unwatched};
+use centrical_report::{Emphasis, Screen};
+use centrical_session::{Calibrated, Depth, Error, Past, Place, Selection, read_calibrations, spelling, unwatched};
+
+use crate::output::remark;
 
 /// Results, and what they have to be of.
 #[derive(Debug, Clone, clap::Args)]
@@ -32,22 +35,37 @@ impl Choice {
             station: self.station.clone(),
             ..Selection::default()
         };
-        let calibrations = read_calibrations(&self.results, &selection, &unwatched)?;
+        let Past { calibrations, undated } = read_calibrations(&self.results, &selection, &unwatched)?;
+        remark_undated(&undated);
         if calibrations.is_empty() {
-            let found = format!("no such calibration{}", self.alike());
+            let alike = self.alike();
+            let but = if alike.is_empty() { alike } else { format!(" but those of serial {alike}") };
+            let found = format!("no such calibration{but}");
             return Err(self.refuse(found, "results, as --model, --serial and --station ask for"));
         }
         Ok(calibrations)
     }
 
-    /// Serial numbers that differ from the one asked for in spaces, hyphens, case or Cyrillic letters alone.
+    /// Remarks that calibrations of other serial numbers may be of the unit that is asked for.
+    pub fn remark_alike(&self) {
+        let alike = self.alike();
+        if !alike.is_empty() {
+            let mut screen = Screen::default();
+            let words = format!("calibrations of serial {alike} are not taken: expected one name for one unit");
+            screen.marked(Emphasis::Warning, "SPELLING", &words);
+            remark(&screen);
+        }
+    }
+
+    /// Other serial numbers that differ from the one asked for in spaces, hyphens, case or Cyrillic letters alone.
     fn alike(&self) -> String {
-        let Some(wanted) = self.serial.as_deref().map(spelling) else { return String::new() };
-        let all = read_calibrations(&self.results, &Selection::default(), &unwatched).unwrap_or_default();
-        let alike = all.iter().map(|c| c.unit_serial.as_str()).filter(|serial| spelling(serial) == wanted);
+        let Some(asked) = &self.serial else { return String::new() };
+        let wanted = spelling(asked);
+        let all = read_calibrations(&self.results, &Selection::default(), &unwatched).unwrap_or_default().calibrations;
+        let alike =
+            all.iter().map(|c| c.unit_serial.as_str()).filter(|serial| *serial != asked && spelling(serial) == wanted);
         let alike: BTreeSet<String> = alike.map(|serial| format!("\"{serial}\"")).collect();
-        let listed = alike.into_iter().collect::<Vec<_>>().join(", ");
-        if listed.is_empty() { listed } else { format!(" but those of serial {listed}") }
+        alike.into_iter().collect::<Vec<_>>().join(", ")
     }
 
     /// What all have in common.
@@ -73,4 +91,17 @@ impl Choice {
     pub fn refuse(&self, found: String, expected: &str) -> Error {
         Error::content(&self.results[0], Place::Whole, found, expected)
     }
+}
+
+/// Remarks that no history has calibrations without a day for a date.
+fn remark_undated(undated: &[String]) {
+    let mut screen = Screen::default();
+    for calibration in undated {
+        screen.marked(
+            Emphasis::Warning,
+            "NO DAY",
+            &format!("{calibration}, expected a day such as 2026-10-05: left out"),
+        );
+    }
+    remark(&screen);
 }

@@ -22,6 +22,9 @@ pub struct Arguments {
     /// Largest error of a compensated reading, for the due date: '300 ug'
     #[arg(short, long, value_parser = largest_error)]
     limit: Option<f64>,
+    /// Day on which that limit is to hold [default: today]
+    #[arg(long, value_name = "DAY")]
+    on: Option<Date>,
     /// Day of the forecasts [default: a year after the last calibration]
     #[arg(short, long, value_name = "DAY")]
     until: Option<Date>,
@@ -44,7 +47,8 @@ pub struct Arguments {
 /// Units that a message names.
 const SHOWN: usize = 8;
 
-/// Runs the command. Exit code 1 when a reading may be beyond its limit already.
+/// Runs the command. Exit code 1 when a reading may be beyond its limit on the day that is asked for, or the last calibration has an objection.
+/// Scatter and drift are what a history measures, and no failure.
 pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let choice = &arguments.choice;
     if !(arguments.confidence > 0.5 && arguments.confidence < 1.0) {
@@ -62,10 +66,12 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     };
     let same_model = |unit: &Vec<Calibrated>| unit.first().is_some_and(|c| c.unit_model == calibrations[0].unit_model);
     let others: Vec<_> = others.into_iter().filter(same_model).collect();
+    choice.remark_alike();
     let request = UnitHistoryRequest {
         trend: !arguments.without_trend,
         until: arguments.until,
         limit: arguments.limit,
+        on: Some(arguments.on.unwrap_or_else(Date::today)),
         coverage: arguments.confidence,
     };
     let report = unit_history(calibrations, &others, request).ok_or_else(|| {

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use centrical_session::{
-    Calibrated, ChartLimits, ChartRequest, ComparedUnits, Depth, Error, HistoryLine, HistoryList, OnProgress,
+    Calibrated, ChartLimits, ChartRequest, ComparedUnits, Date, Depth, Error, HistoryLine, HistoryList, OnProgress,
     ParameterLimits, RuleSet, Selection, UnitsHistoryReport, UnitsHistoryRequest, advance, by_unit, chart, list_store,
     read_batches, read_calibrations, read_limits, station_history, unit_means, units_history,
 };
@@ -43,7 +43,7 @@ impl Overview {
     pub fn read(folder: &Path, request: &PagesRequest, progress: OnProgress) -> Result<Self, Error> {
         let list = list_store(folder, Selection::default(), progress)?;
         let selection = Selection { depth: Depth::Errors, ..Selection::default() };
-        let calibrations = read_calibrations(&[folder.to_owned()], &selection, progress)?;
+        let calibrations = read_calibrations(&[folder.to_owned()], &selection, progress)?.calibrations;
         let limits = request.laboratory.as_deref().map(|file| read_limits(file, &calibrations)).transpose()?;
         let batches = request.batches.as_deref().map(read_batches).transpose()?;
         let asked = UnitsHistoryRequest { limits: limits.unwrap_or_default(), batches: batches.unwrap_or_default() };
@@ -62,7 +62,8 @@ impl Overview {
 /// The units with two calibrations or more: each has a page.
 fn units(list: &HistoryList) -> BTreeMap<String, BTreeSet<String>> {
     let mut units: BTreeMap<(&str, &str), BTreeSet<String>> = BTreeMap::new();
-    for line in list.calibrations.iter().filter(|line| line.acceptable.is_some()) {
+    let has_day = |line: &&HistoryLine| line.acceptable.is_some() && line.date.parse::<Date>().is_ok();
+    for line in list.calibrations.iter().filter(has_day) {
         units.entry((&line.unit_model, &line.unit_serial)).or_default().insert(line.key.clone());
     }
     let units = units.into_iter().filter(|(_, keys)| keys.len() > 1);

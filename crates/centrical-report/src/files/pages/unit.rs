@@ -60,13 +60,12 @@ impl UnitPages {
     /// [`Error`] when the store cannot be read.
     pub fn read(&self, keys: BTreeSet<String>, progress: OnProgress) -> Result<Vec<Calibrated>, Error> {
         let selection = Selection { depth: Depth::Whole, keys: Some(keys), ..Selection::default() };
-        read_calibrations(std::slice::from_ref(&self.folder), &selection, progress)
+        Ok(read_calibrations(std::slice::from_ref(&self.folder), &selection, progress)?.calibrations)
     }
 
     /// The page of a unit by its calibrations, in the order of time.
     pub fn made(&self, calibrations: &[Calibrated]) -> String {
-        let request =
-            UnitHistoryRequest { trend: true, until: None, limit: self.limit, coverage: UnitHistoryRequest::COVERAGE };
+        let request = UnitHistoryRequest { limit: self.limit, ..UnitHistoryRequest::default() };
         let Some(report) = unit_history(calibrations, &[], request) else {
             return no_unit_history_page(&calibrations[0].unit_model, &calibrations[0].unit_serial);
         };
@@ -85,4 +84,4 @@ impl UnitPages {
 }
 
 /// Counts up when a page of the same calibrations looks otherwise.
-const FORM: u32 = 3;
+const FORM: u32 = 4;

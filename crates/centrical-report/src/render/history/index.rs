@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use centrical_session::{HistoryLine, HistoryList, StationHistoryReport, UnitsHistoryReport};
+use centrical_session::{Date, HistoryLine, HistoryList, StationHistoryReport, UnitsHistoryReport};
 
 use super::frame::{PageKind, linked_serial, page, verdict};
 use crate::number::counted;
@@ -145,11 +145,13 @@ fn row(body: &mut String, line: &HistoryLine, serial: &str) {
         Some(false) => ("not acceptable", "bad"),
         None => ("failed", "bad"),
     };
+    let has_day = line.acceptable.is_none() || line.date.parse::<Date>().is_ok();
+    let day = if has_day { line.date.clone() } else { format!("{} (no day: in no history)", line.date) };
     let why = line.message.clone().unwrap_or_else(|| line.objections.join(", "));
     let _ = writeln!(
         body,
         "<tr><td>{}</td><td>{}</td><td>{serial}</td><td>{}</td><td class=\"number\">{}</td><td class=\"{class}\">{verdict}<span>{}</span></td></tr>",
-        Escaped(&line.date),
+        Escaped(&day),
         Escaped(&line.unit_model),
         Escaped(&line.station),
         ratio.map_or_else(String::new, |ratio| format!("{ratio:.3}")),

@@ -74,7 +74,7 @@ const fn words(kind: DoubtKind) -> (&'static str, &'static str) {
             "found results of one unit and day, expected one, or a switch-on between them: histories count each as a session",
         ),
         DoubtKind::NoDay => {
-            ("NO DAY", "found a date that is no day, expected one such as 2026-10-05: histories refuse it")
+            ("NO DAY", "found a date that is no day, expected one such as 2026-10-05: histories leave it out")
         }
         DoubtKind::Ahead => ("AHEAD", "found a date later than today, expected the day of the session"),
         DoubtKind::Missing => ("MISSING", "found no copy of the result in the folder results, expected one"),

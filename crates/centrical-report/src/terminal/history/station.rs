@@ -2,8 +2,8 @@
 
 use centrical_session::{StationHistoryReport, StationParameter, customary};
 
-use super::chance::chance;
 use crate::number::{counted, two_digits, with_uncertainty};
+use crate::terminal::chance::chance;
 use crate::terminal::screen::{Emphasis, Screen};
 use crate::terminal::symbols::legend;
 use crate::terminal::table::{Align, Cell, Table};

@@ -5,8 +5,8 @@ use centrical_session::{
     customary, unit_name,
 };
 
-use super::chance::chance;
 use crate::number::{counted, two_digits, unsigned_zero, with_uncertainty};
+use crate::terminal::chance::chance;
 use crate::terminal::screen::{Emphasis, Screen};
 use crate::terminal::symbols::legend;
 use crate::terminal::table::{Align, Cell, Table};
@@ -59,8 +59,12 @@ fn verdict(screen: &mut Screen, report: &UnitHistoryReport) {
             screen.marked(Emphasis::Acceptable, "DUE", &words);
         }
         (Some(due), Some(limit), _) => {
+            let since = match report.sessions.last() {
+                Some(last) if due.date > last.date => format!("since {}; on {} ", due.date, report.on),
+                _ => String::new(),
+            };
             let words = format!(
-                "a compensated reading is not {} after the next switch-on; first: {}",
+                "{since}a compensated reading is not {} after a switch-on; first: {}",
                 within(limit),
                 place(due)
             );
@@ -89,8 +93,10 @@ fn verdict(screen: &mut Screen, report: &UnitHistoryReport) {
         screen.marked(Emphasis::Warning, "NOT COMPARED", &words);
     }
     if !report.not_in_last.is_empty() {
-        let words =
-            format!("the last calibration does not determine {}, as earlier ones do", short_list(&report.not_in_last));
+        let words = format!(
+            "the last calibration does not determine {}, as earlier ones do; a due date counts them as an error",
+            short_list(&report.not_in_last)
+        );
         screen.marked(Emphasis::Warning, "NOT IN LAST", &words);
     }
     if let Some(test) = &report.sameness {
@@ -106,13 +112,22 @@ fn verdict(screen: &mut Screen, report: &UnitHistoryReport) {
     }
     if let Some(session) = report.deviating() {
         let words = format!(
-            "{}, {}: by the stated uncertainties a session deviates as much with a probability of {}, and the others as they do with {}",
+            "{}, {}: a session deviates as much by the stated uncertainties with a probability of {}, and by the scatter of the others with {}; \
+             the others as they do by the stated uncertainties with {}",
             session.date,
             session.source,
             chance(session.probability),
+            chance(session.probability_by_scatter),
             chance(session.probability_of_others)
         );
         screen.marked(Emphasis::Warning, "DEVIATES", &words);
+    }
+    for [one, other] in report.twice() {
+        let words = format!(
+            "{}, {} and {}, {} have the same values to the last digit, and count as two sessions",
+            one.date, one.source, other.date, other.source
+        );
+        screen.marked(Emphasis::Warning, "TWICE", &words);
     }
     if report.sessions.len() < 3 {
         screen.marked(Emphasis::Warning, "FEW", "two calibrations show no trend beside the scatter between sessions");
@@ -160,13 +175,15 @@ fn parameters(screen: &mut Screen, report: &UnitHistoryReport) {
         1 => String::new(),
         units => format!(", common to {units} units"),
     };
+    let percent = percent(report.coverage);
     let kind = if report.trend { "about a line in time" } else { "about a constant" };
     screen.head(
         "PARAMETERS",
         &format!(
             "last ± its standard uncertainty; standard deviation between sessions beside the stated one, {kind}{together}, with its \
-             interval of {}; F of the scatter; drift per year ± standard uncertainty; E_n (k = 2) against the calibration before and the first",
-            percent(report.coverage)
+             interval of {percent}; F of the scatter; drift per year ± standard uncertainty; interval of {percent} of the value after a switch-on \
+             on {}; E_n (k = 2) against the calibration before and the first",
+            report.until
         ),
     );
     let columns = [
@@ -177,6 +194,7 @@ fn parameters(screen: &mut Screen, report: &UnitHistoryReport) {
         ("interval", Align::Left),
         ("F", Align::Right),
         ("per year", Align::Right),
+        ("forecast", Align::Left),
         ("E_n", Align::Right),
         ("first", Align::Right),
         ("", Align::Words),
@@ -188,17 +206,16 @@ fn parameters(screen: &mut Screen, report: &UnitHistoryReport) {
     screen.table(table);
 }
 
-fn parameter(p: &UnitParameter) -> [Cell; 10] {
+fn parameter(p: &UnitParameter) -> [Cell; 11] {
     let (factor, unit) = customary(&p.unit, p.group);
     let estimate = |value: f64, u: f64| Cell::estimate(with_uncertainty(factor * value, factor.abs() * u));
     let last = p.values.last().zip(p.standard_uncertainties.last());
     let shown = |value: f64| two_digits(factor.abs() * value);
     let between = p.between.map_or_else(String::new, shown);
-    let interval =
-        p.between_interval.map_or_else(String::new, |[low, high]| format!("{} to {}", shown(low), shown(high)));
     let slope = p.slope_per_year.zip(p.slope_uncertainty);
     let mark = match (p.drifts, p.scatters) {
-        (true, _) => "DRIFTS",
+        (true, true) => "DRIFTS, SCATTERS",
+        (true, false) => "DRIFTS",
         (false, true) => "SCATTERS",
         (false, false) => "",
     };
@@ -208,13 +225,27 @@ fn parameter(p: &UnitParameter) -> [Cell; 10] {
         unit.into(),
         last.map_or_else(Cell::default, |(value, u)| estimate(*value, *u)),
         between.into(),
-        interval.into(),
+        p.between_interval.map_or_else(String::new, |ends| interval(ends, shown)).into(),
         p.variance_ratio.map_or_else(String::new, |f| format!("{f:.1}")).into(),
         slope.map_or_else(Cell::default, |(value, u)| estimate(value, u)),
+        p.forecast.map_or_else(String::new, |ends| forecast(ends.map(|end| factor * end))).into(),
         e_n(p.e_n_previous).into(),
         e_n(p.e_n_first).into(),
         mark.into(),
     ]
+}
+
+/// The interval of a standard deviation between sessions. It has no length where nearly all sessions would scatter more that state such
+/// uncertainties.
+fn interval([low, high]: [f64; 2], shown: impl Fn(f64) -> String) -> String {
+    if high == 0.0 { "less than stated".to_owned() } else { format!("{} to {}", shown(low), shown(high)) }
+}
+
+/// An interval of values, each to two digits of its half length.
+fn forecast(ends: [f64; 2]) -> String {
+    let half = 0.5 * (ends[1] - ends[0]).abs();
+    let [a, b] = [ends[0].min(ends[1]), ends[0].max(ends[1])].map(|end| with_uncertainty(end, half).0);
+    format!("{a} to {b}")
 }
 
 fn readings(screen: &mut Screen, report: &UnitHistoryReport) {
@@ -223,14 +254,16 @@ fn readings(screen: &mut Screen, report: &UnitHistoryReport) {
     }
     screen.head(
         "AFTER A SWITCH-ON",
-        "standard uncertainty of a reading compensated by the last calibration, µg: stated, between sessions, and both; the worst of each newtonometer",
+        "standard uncertainty of a reading compensated by the last calibration, µg: stated; between sessions with its interval; after a switch-on, \
+         sqrt(stated^2 + 2 between^2); of each newtonometer at rest, and where it is largest",
     );
     let columns = [
         ("newtonometer", Align::Left),
         ("force, g", Align::Left),
         ("stated", Align::Right),
         ("between", Align::Right),
-        ("both", Align::Right),
+        ("interval", Align::Left),
+        ("after", Align::Right),
         ("due", Align::Left),
     ];
     let mut table = Table::new(1, columns);
@@ -240,13 +273,14 @@ fn readings(screen: &mut Screen, report: &UnitHistoryReport) {
     screen.table(table);
 }
 
-fn reading(r: &ReadingHistory) -> [Cell; 6] {
+fn reading(r: &ReadingHistory) -> [Cell; 7] {
     let micro_g = |value: f64| Cell::from(two_digits(value / MICRO_G));
     [
         r.axis.to_string().into(),
         force(r.force).into(),
         micro_g(r.stated),
         micro_g(r.between),
+        interval(r.between_interval, |value| two_digits(value / MICRO_G)).into(),
         micro_g(r.after_switch_on),
         r.due.as_ref().map_or_else(String::new, |due| due.date.to_string()).into(),
     ]

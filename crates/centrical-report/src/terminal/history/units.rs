@@ -1,12 +1,12 @@
 //! Units of one type beside each other.
 
 use centrical_session::{
-    BatchWithoutUnit, BeyondLimit, UnitFindingKind, UnitsHistoryReport, UntestedStation, customary,
+    BatchWithoutUnit, BeyondLimit, UnitFindingKind, UnitsHistoryReport, UnitsParameter, UntestedStation, customary,
 };
 
-use super::chance::chance;
 use super::unit::{first_of, left_out};
 use crate::number::{counted, with_uncertainty};
+use crate::terminal::chance::chance;
 use crate::terminal::screen::{Emphasis, Screen};
 use crate::terminal::symbols::legend;
 use crate::terminal::table::{Align, Cell, Table};
@@ -25,6 +25,7 @@ pub fn units_history_text(report: &UnitsHistoryReport) -> Screen {
     without_unit(&mut screen, report);
     outlying(&mut screen, report);
     findings(&mut screen, report);
+    batch_means(&mut screen, report);
     parameters(&mut screen, report);
     screen
 }
@@ -165,6 +166,44 @@ fn batches(screen: &mut Screen, report: &UnitsHistoryReport) {
         let words = format!("{list}: their means differ in none of {}", counted(compared, "parameter"));
         screen.marked(Emphasis::Acceptable, "BATCHES ALIKE", &words);
     }
+}
+
+/// The parameters by batch where batches differ: a row for each of the two.
+fn batch_means(screen: &mut Screen, report: &UnitsHistoryReport) {
+    let differing: Vec<&UnitsParameter> = report.parameters.iter().filter(|p| p.batches_differ).collect();
+    if differing.is_empty() {
+        return;
+    }
+    screen.gap();
+    screen.head(
+        "BATCHES",
+        "mean ± standard deviation over the units of a batch; probability of means as different by chance (Welch)",
+    );
+    let columns = [
+        ("", Align::Left),
+        ("unit", Align::Left),
+        ("batch", Align::Left),
+        ("units", Align::Right),
+        ("mean", Align::Right),
+        ("probability", Align::Left),
+    ];
+    let mut table = Table::new(3, columns);
+    for p in differing {
+        let (factor, unit) = customary(&p.unit, p.group);
+        for b in &p.batches {
+            let shown = with_uncertainty(factor * b.mean, factor.abs() * b.deviation.or(p.deviation).unwrap_or(0.0));
+            let mean = if b.deviation.is_some() { Cell::estimate(shown) } else { shown.0.into() };
+            table.row([
+                p.name.as_str().into(),
+                unit.into(),
+                b.batch.as_str().into(),
+                b.units.to_string().into(),
+                mean,
+                p.batch_probability.map_or_else(String::new, chance).into(),
+            ]);
+        }
+    }
+    screen.table(table);
 }
 
 /// Serial numbers of the batches that no unit has: those near one by itself, the others together.

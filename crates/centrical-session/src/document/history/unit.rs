@@ -77,8 +77,10 @@ pub struct UnitHistoryReport {
     pub range: f64,
     /// Largest error of a compensated reading [m/s^2], if one was given.
     pub limit: Option<f64>,
-    /// Whether a reading compensated by the last calibration is within the limit on the day after it; null without a limit, and where some
-    /// readings are not determined and none is beyond.
+    /// The day that the next is of: that of the last calibration or a later one.
+    pub on: Date,
+    /// Whether a reading compensated by the last calibration is within the limit after a switch-on that day; null without a limit, and where
+    /// some readings are not determined and none is beyond.
     pub is_within: Option<bool>,
     /// The first due date of all readings; null where some are not determined, unless one is overdue.
     pub due: Option<DueDate>,
@@ -112,6 +114,8 @@ pub struct DeviatingSession {
     pub probability: f64,
     /// Probability of so large a chi^2 of the others without it.
     pub probability_of_others: f64,
+    /// Probability that by the scatter of the others any session deviates as much.
+    pub probability_by_scatter: f64,
 }
 
 /// One parameter over the sessions, SI.
@@ -171,7 +175,8 @@ pub struct ReadingHistory {
     pub between: f64,
     /// Its interval [m/s^2].
     pub between_interval: [f64; 2],
-    /// Standard uncertainty after a switch-on: both together [m/s^2].
+    /// Standard uncertainty after a switch-on, `sqrt(stated^2 + 2 between^2)`: the session of the calibration and the next one deviate
+    /// from their mean independently [m/s^2].
     pub after_switch_on: f64,
     /// When the reading leaves its limit.
     pub due: Option<DueDate>,
@@ -202,12 +207,21 @@ impl UnitHistoryReport {
         self.sameness.as_ref().is_some_and(|test| Level::Disagreement.is_passed_by(test.probability))
     }
 
-    /// The session that differs from the others, where the others are the same without it.
+    /// The session that differs from the others, where the others are the same without it, or it is too far off for their scatter.
     pub fn deviating(&self) -> Option<&DeviatingSession> {
         let farthest = self.sameness.as_ref()?.farthest.as_ref()?;
         let is_alone = Level::Disagreement.is_passed_by(farthest.probability)
-            && !Level::Disagreement.is_passed_by(farthest.probability_of_others);
+            && (!Level::Disagreement.is_passed_by(farthest.probability_of_others)
+                || Level::Disagreement.is_passed_by(farthest.probability_by_scatter));
         is_alone.then_some(farthest)
+    }
+
+    /// Pairs of sessions with the same values to the last digit: one session that counts twice.
+    pub fn twice(&self) -> Vec<[&PastSession; 2]> {
+        let values = |n: usize| self.parameters.iter().map(move |p| p.values.get(n));
+        let pairs = (0..self.sessions.len()).flat_map(|n| (0..n).map(move |m| [m, n]));
+        let same = pairs.filter(|[m, n]| !self.parameters.is_empty() && values(*m).eq(values(*n)));
+        same.map(|pair| pair.map(|n| &self.sessions[n])).collect()
     }
 
     /// Whether they differ, and are too few to say of any parameter that it scatters or drifts.
@@ -222,7 +236,8 @@ impl UnitHistoryReport {
             let of_axis = || self.readings.iter().filter(|r| r.axis == axis);
             let at_rest = of_axis().find(|r| r.force == [0.0; 3]);
             let worst = of_axis().max_by(|a, b| a.after_switch_on.total_cmp(&b.after_switch_on));
-            shown.extend(at_rest.into_iter().chain(worst));
+            let other = worst.filter(|worst| worst.force != [0.0; 3]);
+            shown.extend(at_rest.into_iter().chain(other));
         }
         shown
     }

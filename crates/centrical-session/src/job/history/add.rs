@@ -7,7 +7,8 @@ use centrical::{OnProgress, advance, unwatched};
 
 use super::results::collect_results;
 use crate::document::CalibrationResult;
-use crate::error::{Error, Place};
+use crate::error::{Error, Place, quoted};
+use crate::quantity::Date;
 use crate::settings::read_result;
 use crate::store::{Added, Row, Store};
 
@@ -40,7 +41,9 @@ pub fn add_results(
     let mut batch: Vec<(Row, Option<Vec<u8>>)> = Vec::new();
     for (n, file) in files.iter().enumerate() {
         let text = read_result(file, "a result.json")?;
-        let row = CalibrationResult::parse(file, &text)?.row(text.as_bytes());
+        let result = CalibrationResult::parse(file, &text)?;
+        refuse_date(file, &result.session.date)?;
+        let row = result.row(text.as_bytes());
         batch.push((row, (!rows_only).then(|| text.into_bytes())));
         if batch.len() == BATCH || n + 1 == files.len() {
             let of_batch = store.add_with_results(mem::take(&mut batch), progress)?;
@@ -49,6 +52,18 @@ pub fn add_results(
         advance(progress, 1)?;
     }
     Ok(added)
+}
+
+/// Refuses a date that is not a day, in a `file` whose result is to be added to a store. Without a date a result may be listed.
+///
+/// # Errors
+/// [`Error`] naming the file, and the date that was found.
+pub fn refuse_date(file: &Path, date: &str) -> Result<(), Error> {
+    if date.is_empty() || date.parse::<Date>().is_ok() {
+        return Ok(());
+    }
+    let place = Place::Key { table: "session".to_owned(), key: "date".to_owned() };
+    Err(Error::content(file, place, quoted(date.as_bytes()), "a day such as 2026-10-05, which a history takes it by"))
 }
 
 /// Adds one result that is in memory, as its file has it, to the store in `folder`.

@@ -14,7 +14,13 @@ use crate::settings::read_settings;
 pub fn read_batches(file: &Path) -> Result<BTreeMap<String, String>, Error> {
     let text = read_settings(file, "a table of serial numbers and batches")?;
     let mut batches = BTreeMap::new();
-    for (n, line) in text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty() && !line.starts_with('#')) {
+    // Spreadsheets write a byte order mark.
+    for (n, line) in text
+        .trim_start_matches('\u{feff}')
+        .lines()
+        .enumerate()
+        .filter(|(_, line)| !line.trim().is_empty() && !line.starts_with('#'))
+    {
         let words: Vec<&str> = line.split([',', ';', '\t']).map(str::trim).collect();
         let refuse = |expected: &str| {
             let place = Place::Line { line: n as u64 + 1, column: None };

@@ -87,7 +87,7 @@ impl<'a> Finder<'a> {
 impl Calibrated {
     /// The calibration in a row of a store, or of a result that is called `source`; `None` if its session has no day for a date.
     pub fn of(source: String, row: Row, kinds: &mut Kinds) -> Option<Self> {
-        let date = row.date.trim().parse().ok()?;
+        let date = row.date.parse().ok()?;
         Some(Self::on(date, source, row, kinds))
     }
 

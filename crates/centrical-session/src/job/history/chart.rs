@@ -67,8 +67,11 @@ impl NoChart {
     pub fn expected(&self) -> String {
         match self {
             Self::Unknown(_) => "the name of a parameter in the results".to_owned(),
+            Self::TooFew { expected, .. } if *expected <= FEWEST => {
+                format!("{FEWEST} for the limits, or more by --accepted, or stated limits")
+            }
             Self::TooFew { expected, .. } => {
-                format!("{} for the limits, fewer by --accepted, or stated limits", (*expected).max(FEWEST))
+                format!("{expected} for the limits, fewer by --accepted, or stated limits")
             }
             Self::Equal(_) => "values that scatter, or stated limits by --centre and --deviation".to_owned(),
         }

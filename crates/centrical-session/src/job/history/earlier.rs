@@ -28,11 +28,11 @@ pub fn history_up_to(file: &Path, result: &CalibrationResult, paths: &[PathBuf])
     let files: Vec<PathBuf> = std::iter::once(file.to_owned()).chain(paths.iter().cloned()).collect();
     let source = file.display().to_string();
     let all = read_calibrations(&files, &selection, &unwatched)?;
-    let (this, others): (Vec<Calibrated>, Vec<Calibrated>) = all.into_iter().partition(|c| c.source == source);
+    let (this, others): (Vec<Calibrated>, Vec<Calibrated>) =
+        all.calibrations.into_iter().partition(|c| c.source == source);
     let is_earlier = |other: &Calibrated| this.first().is_some_and(|this| other.date <= this.date);
     let calibrations: Vec<Calibrated> = others.into_iter().filter(is_earlier).chain(this.iter().cloned()).collect();
-    let request = UnitHistoryRequest { trend: true, until: None, limit: None, coverage: UnitHistoryRequest::COVERAGE };
-    unit_history(&calibrations, &[], request).ok_or_else(|| {
+    unit_history(&calibrations, &[], UnitHistoryRequest::default()).ok_or_else(|| {
         let place = paths.first().map_or(file, PathBuf::as_path);
         let day = this.first().map_or_else(String::new, |this| format!(" up to {}", this.date));
         let expected = format!("one or more of {model}, serial \"{serial}\",{day} with a parameter in common");

@@ -7,37 +7,42 @@ use centrical::{OnProgress, advance};
 
 use super::calibrated::{Calibrated, Kinds, Output};
 use super::results::collect_results;
-use crate::document::CalibrationResult;
+use crate::document::{CalibrationResult, unit_name};
 use crate::error::{Error, Place, quoted};
+use crate::quantity::Date;
 use crate::settings::read_result;
 use crate::store::{Depth, Row, Selection, Status, Store};
+
+/// Calibrations of the past.
+#[derive(Debug, Clone, Default)]
+pub struct Past {
+    /// In the order of time.
+    pub calibrations: Vec<Calibrated>,
+    /// Those of a store that have no day for a date, in words: no history has a place for them.
+    pub undated: Vec<String>,
+}
 
 /// The calibrations in `paths` that `selection` picks, in the order of time: results; stores; other folders, in which each `result.json` at any
 /// depth is one. A result that is met twice counts once; sessions of a store without a result do not count. `progress` is asked at each result and
 /// at each row group of a store, with none done.
 ///
 /// # Errors
-/// [`Error`] when a result or a store cannot be read, or a session has no day for a date; [`Error::Stopped`].
-pub fn read_calibrations(
-    paths: &[PathBuf],
-    selection: &Selection,
-    progress: OnProgress,
-) -> Result<Vec<Calibrated>, Error> {
-    let mut found =
-        Found { selection, progress, kinds: Kinds::default(), keys: HashSet::new(), calibrations: Vec::new() };
+/// [`Error`] when a result or a store cannot be read, or a file has no day for a date; [`Error::Stopped`].
+pub fn read_calibrations(paths: &[PathBuf], selection: &Selection, progress: OnProgress) -> Result<Past, Error> {
+    let mut found = Found { selection, progress, kinds: Kinds::default(), keys: HashSet::new(), past: Past::default() };
     for path in paths {
         match Store::open(path) {
             Ok(store) => found.take_store(&store)?,
             Err(_) => found.take_files(path)?,
         }
     }
-    let mut calibrations = found.calibrations;
+    let Past { mut calibrations, undated } = found.past;
     calibrations.sort_by(|a, b| {
         a.date.cmp(&b.date).then_with(|| a.unit().cmp(&b.unit())).then_with(|| a.source.cmp(&b.source))
     });
     refuse_other_outputs(&calibrations)?;
     restate(&mut calibrations);
-    Ok(calibrations)
+    Ok(Past { calibrations, undated })
 }
 
 /// Refuses calibrations of one unit in counts and in volts: nothing says how many counts a volt is.
@@ -84,14 +89,19 @@ struct Found<'a> {
     progress: OnProgress<'a>,
     kinds: Kinds,
     keys: HashSet<String>,
-    calibrations: Vec<Calibrated>,
+    past: Past,
 }
 
 impl Found<'_> {
     fn take_store(&mut self, store: &Store) -> Result<(), Error> {
         for row in store.rows(self.selection.clone(), self.progress)? {
             let row = row?;
-            self.take(store.folder(), row.key.clone(), row)?;
+            if row.status == Status::Done && row.date.parse::<Date>().is_err() {
+                let unit = unit_name(&row.unit_model, &row.unit_serial);
+                self.past.undated.push(format!("{unit}, {}: {}", row.key, quoted(row.date.as_bytes())));
+            } else {
+                self.take(store.folder(), row.key.clone(), row)?;
+            }
         }
         Ok(())
     }
@@ -119,7 +129,7 @@ impl Found<'_> {
             Error::content(file, place, quoted(date.as_bytes()), "a day such as 2026-10-05")
         })?;
         let is_condensed = self.selection.depth <= Depth::Errors;
-        self.calibrations.push(if is_condensed { calibrated.condensed() } else { calibrated });
+        self.past.calibrations.push(if is_condensed { calibrated.condensed() } else { calibrated });
         Ok(())
     }
 }

@@ -24,8 +24,17 @@ pub struct UnitHistoryRequest {
     pub until: Option<Date>,
     /// Largest error of a compensated reading [m/s^2], for the due date.
     pub limit: Option<f64>,
+    /// The day on which that limit is to hold; that of the last calibration if absent or earlier.
+    pub on: Option<Date>,
     /// Probability of all intervals, and that of a reading within its limit at the due date.
     pub coverage: f64,
+}
+
+impl Default for UnitHistoryRequest {
+    /// A trend, the forecast of a year, and no limit.
+    fn default() -> Self {
+        Self { trend: true, until: None, limit: None, on: None, coverage: Self::COVERAGE }
+    }
 }
 
 impl UnitHistoryRequest {
@@ -58,6 +67,7 @@ pub fn unit_history(
     }
     let (zero, trend) = (own[0].date, request.trend && own.len() > 2);
     let until = request.until.unwrap_or(last.date.after(DAYS_IN_YEAR));
+    let on = request.on.map_or(last.date, |on| on.max(last.date));
     let job = Job {
         own: &own,
         others: &others.iter().map(|unit| unit.iter().collect()).collect::<Vec<Vec<&Calibrated>>>(),
@@ -80,7 +90,7 @@ pub fn unit_history(
     // Of some readings alone a day would pass for that of all.
     let are_all = readings.len() == READINGS;
     let due = readings.iter().filter_map(|r| r.due.as_ref()).min_by_key(|due| due.date).cloned();
-    let due = due.filter(|due| are_all || due.date <= last.date);
+    let due = due.filter(|due| are_all || due.date <= on);
     Some(UnitHistoryReport {
         schema: UNIT_HISTORY_SCHEMA,
         program: Program::this(),
@@ -101,7 +111,8 @@ pub fn unit_history(
         is_within: request
             .limit
             .filter(|_| are_all || due.is_some())
-            .map(|_| due.as_ref().is_none_or(|due| due.date > last.date)),
+            .map(|_| due.as_ref().is_none_or(|due| due.date > on)),
+        on,
         due,
         due_after: request.limit.filter(|_| are_all).map(|_| last.date.after(HORIZON * DAYS_IN_YEAR)),
         readings,
@@ -120,6 +131,11 @@ fn not_in(last: &Calibrated, calibrations: &[&Calibrated]) -> Vec<String> {
         }
     }
     names
+}
+
+/// Whether `last` has each term of a calibration.
+fn is_part(calibrated: &Calibrated, last: &Calibrated) -> bool {
+    calibrated.terms.iter().flatten().all(|(name, _)| last.place(name).is_some())
 }
 
 /// Parameters of the unit that all calibrations determine.
@@ -163,6 +179,7 @@ impl Job<'_> {
                 date: self.own[farthest.session].date,
                 probability: farthest.probability,
                 probability_of_others: farthest.probability_of_others,
+                probability_by_scatter: farthest.probability_by_scatter,
             }),
         })
     }
@@ -253,6 +270,15 @@ impl Job<'_> {
         readings
     }
 
+    /// What terms that the last calibration lacks added to a reading, as the latest calibration that has them determined [m/s^2].
+    fn missing(&self, force: Vector3<f64>, axis: usize) -> f64 {
+        let Some(last) = self.own.last() else { return 0.0 };
+        let latest = self.own.iter().rev().find(|calibrated| calibrated.terms.is_some() && !is_part(calibrated, last));
+        let terms = latest.into_iter().flat_map(|calibrated| calibrated.terms.iter().flatten());
+        let lacking = terms.filter(|(name, term)| term.axis == axis && last.place(name).is_none());
+        lacking.map(|(_, term)| term.coefficient * term.monomial.value(force.into())).sum()
+    }
+
     fn reading(&self, force: Vector3<f64>, axis: usize, combination: &[(String, f64)]) -> Option<ReadingHistory> {
         let all = self.combination(combination, Basis::Data)?;
         let between = self.between(&all)?;
@@ -262,6 +288,7 @@ impl Job<'_> {
         let stated = last.variance(&places).max(0.0);
         let point = all[0].points().last()?;
         let due = self.request.limit.and_then(|limit| {
+            let limit = (limit - self.missing(force, axis).abs()).max(0.0);
             let evolution = self.evolution(&all, &between)?;
             let from = point.time;
             let time = evolution.due(last.value(&places), limit, self.request.coverage, from, from + HORIZON)?;
@@ -275,7 +302,8 @@ impl Job<'_> {
             stated: stated.sqrt(),
             between: between.variance.sqrt(),
             between_interval: between.interval.map(f64::sqrt),
-            after_switch_on: (stated + between.variance).sqrt(),
+            // The session of the calibration deviates from the mean of all as the next one does.
+            after_switch_on: (stated + 2.0 * between.variance).sqrt(),
             due,
         })
     }

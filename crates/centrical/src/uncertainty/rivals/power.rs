@@ -3,7 +3,7 @@
 use statrs::function::beta::beta_reg;
 use statrs::function::gamma::ln_gamma;
 
-use crate::uncertainty::validity::f_tail;
+use crate::statistics::f_tail;
 
 /// Halvings of an interval: to a millionth of it.
 const HALVINGS: usize = 24;
