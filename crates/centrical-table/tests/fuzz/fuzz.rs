@@ -54,7 +54,7 @@ pub fn mutate_for(seconds: u64, mut parsers: Vec<Parser>) {
 
 /// Tries the seeds and the files that once failed: as they are, and some mutated copies of each, always the same.
 pub fn try_kept(mut parsers: Vec<Parser>) {
-    const COPIES: usize = 100;
+    const COPIES: usize = 30;
     parsers.retain(|parser| !parser.seeds.is_empty());
     for parser in parsers {
         let mut fuzz = Fuzz::new(parser, 0);

@@ -404,18 +404,16 @@ fn large_plans_are_certified() {
 fn plans_of_many_loads_are_certified() {
     let [few, many] = [10, 100].map(|speeds| large(speeds, &[60.0]));
     assert!(many.len() > 1000 && few.len() < 1000);
-    for number in [0, 2] {
-        let plan = |candidates: &Candidates| {
-            let criterion = criterion(number, &candidates.scenarios[0].model);
-            best_for_time(candidates, &criterion, 8.0 * 3600.0, Effort::usual(candidates), &unwatched).unwrap()
-        };
-        let [of_few, of_many] = [&few, &many].map(plan);
-        println!("{number}: gaps {:.2e}, {:.2e}", of_few.gap(), of_many.gap());
-        assert!(of_many.bound <= of_few.criterion);
-        assert!(of_many.criterion < 1.002 * of_few.criterion, "{} {}", of_many.criterion, of_few.criterion);
-        assert!(of_many.continuous.gap() < 2e-3, "{number}: {}", of_many.continuous.gap());
-        assert!((1.0 + of_many.gap()).sqrt() < 1.01, "{number}: {}", of_many.gap());
-    }
+    let plan = |candidates: &Candidates| {
+        let criterion = criterion(2, &candidates.scenarios[0].model);
+        best_for_time(candidates, &criterion, 8.0 * 3600.0, Effort::usual(candidates), &unwatched).unwrap()
+    };
+    let [of_few, of_many] = [&few, &many].map(plan);
+    println!("gaps {:.2e}, {:.2e}", of_few.gap(), of_many.gap());
+    assert!(of_many.bound <= of_few.criterion);
+    assert!(of_many.criterion < 1.002 * of_few.criterion, "{} {}", of_many.criterion, of_few.criterion);
+    assert!(of_many.continuous.gap() < 2e-3, "{}", of_many.continuous.gap());
+    assert!((1.0 + of_many.gap()).sqrt() < 1.01, "{}", of_many.gap());
 }
 
 /// A plan of two durations for the tests of what is predicted.
@@ -426,11 +424,11 @@ fn planned() -> (Candidates, Schedule) {
     (candidates, plan.schedule)
 }
 
-/// What is predicted of a plan, type A and B, is what repeated calibrations show: within 3 % and four standard deviations of
-/// chance in every parameter, and 3 % in the mean.
+/// What is predicted of a plan, type A and B, is what repeated calibrations show: within four standard deviations of chance in every
+/// parameter, and 3 % in the mean.
 #[test]
 fn predictions_are_what_monte_carlo_shows() {
-    const RUNS: usize = 2500;
+    const RUNS: usize = 1000;
     let (candidates, schedule) = planned();
     let (experiment, weights) = candidates.experiment_of(&schedule);
     let scenario = &candidates.scenarios[0];
@@ -452,7 +450,7 @@ fn predictions_are_what_monte_carlo_shows() {
     for (j, statistics) in shown.parameters.iter().enumerate() {
         let (Some(statistics), Some(u)) = (statistics, prediction.budget().standard_uncertainty(j)) else { continue };
         let ratio = statistics.standard_deviation / u;
-        // The standard deviation of one ratio is 1 / sqrt(2 runs), 1.4 %.
+        // The standard deviation of one ratio is 1 / sqrt(2 runs), 2.2 %.
         assert!((ratio - 1.0).abs() < 4.0 / (2.0 * RUNS as f64).sqrt(), "{}: {ratio}", model.parameters()[j].name);
         ratios.push(ratio);
     }
