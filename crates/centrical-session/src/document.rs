@@ -39,6 +39,7 @@ pub use self::compensation::{CompensationReport, FirstReading, ReadingsBeyond};
 pub use self::documents::{DocumentKind, DocumentsReport, ObjectionName, WrittenDocument};
 pub use self::draft::{DraftReport, LineToFillIn};
 pub(crate) use self::history::FAMILY;
+pub(crate) use self::history::shown_readings;
 pub use self::history::{
     BatchSummary, BatchWithoutUnit, BeyondLimit, CHART_SCHEMA, CapabilitySummary, ChartReport, ChartSignal,
     DeviatingSession, DueDate, LeftOutSession, OutlyingUnit, PastSession, ReadingHistory, STATION_HISTORY_SCHEMA,

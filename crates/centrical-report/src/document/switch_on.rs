@@ -31,7 +31,8 @@ pub(super) fn switch_on(history: &UnitHistoryReport, language: Language) -> Vec<
 pub(crate) fn switch_on_sentence(history: &UnitHistoryReport, language: Language) -> Option<String> {
     let messages = language.messages();
     let worst = history.readings.iter().max_by(|a, b| a.after_switch_on.total_cmp(&b.after_switch_on))?;
-    let after = micro_g(worst.after_switch_on, language);
+    let expanded = worst.expanded_after_switch_on.map(|u| format!(", U (95 %) = {}", micro_g(u, language)));
+    let after = format!("{}{}", micro_g(worst.after_switch_on, language), expanded.unwrap_or_default());
     Some(format!(
         "{} {}: u = {after} {ug}; {} {}, {} {} g; {}: {} {ug}; {}: {}",
         messages.switch_on_text,
@@ -90,11 +91,12 @@ fn readings(history: &UnitHistoryReport, language: Language) -> Table {
     let [stated, between, after] = [messages.this_calibration, messages.between_calibrations, messages.after_switch_on]
         .map(|m| format!("{m}, {ug}"));
     let columns = [
-        (messages.newtonometer, 0.2, Align::Left),
-        (&format!("{}, g", messages.specific_force), 0.2, Align::Left),
-        (&stated, 0.18, Align::Right),
-        (&between, 0.24, Align::Right),
-        (&after, 0.18, Align::Right),
+        (messages.newtonometer, 0.16, Align::Left),
+        (&format!("{}, g", messages.specific_force), 0.17, Align::Left),
+        (&stated, 0.15, Align::Right),
+        (&between, 0.22, Align::Right),
+        (&after, 0.14, Align::Right),
+        ("U (95 %)", 0.16, Align::Right),
     ];
     let row = |r: &ReadingHistory| {
         vec![
@@ -103,6 +105,7 @@ fn readings(history: &UnitHistoryReport, language: Language) -> Table {
             micro_g(r.stated, language),
             between_with_interval(r, language),
             micro_g(r.after_switch_on, language),
+            r.expanded_after_switch_on.map_or_else(String::new, |u| micro_g(u, language)),
         ]
     };
     Table::numbers(columns, history.shown_readings().into_iter().map(row))

@@ -336,8 +336,8 @@ pub(crate) const ENGLISH: Messages = Messages {
     switch_on_text: "The uncertainties of this result apply to its session. Changes of the unit between calibrations, at \
         switch-ons and at mountings, appear in its earlier calibrations.",
     switch_on_note: "Standard uncertainties of a compensated reading: by this calibration, the standard deviation between \
-        calibrations with its interval of 95 %, and after a switch-on, √(u² + 2s²): the sessions before and after it deviate \
-        alike. For each newtonometer: at zero force, and where the last is largest.",
+        calibrations with its interval of 95 %, and after a switch-on, the root of u² + 2s²: the sessions before and after it \
+        deviate alike. U takes the number of calibrations into account. For each newtonometer: at zero force, and where the last is largest.",
     less_than_stated: "scatter less than stated",
     calibrations_of_unit: "Calibrations of the unit",
     calibrations_not_acceptable: "not acceptable, of these",

@@ -8,6 +8,7 @@ mod units;
 pub use self::chart::{CHART_SCHEMA, ChartReport, ChartSignal};
 pub(crate) use self::station::FAMILY;
 pub use self::station::{STATION_HISTORY_SCHEMA, StationHistoryReport, StationParameter};
+pub(crate) use self::unit::shown_readings;
 pub use self::unit::{
     DeviatingSession, DueDate, LeftOutSession, PastSession, ReadingHistory, SamenessSummary, UNIT_HISTORY_SCHEMA,
     UnitHistoryReport, UnitParameter,

@@ -255,8 +255,9 @@ fn readings(screen: &mut Screen, report: &UnitHistoryReport) {
     screen.head(
         "AFTER A SWITCH-ON",
         "standard uncertainty of a reading compensated by the last calibration, µg: stated; between sessions with its interval; after a switch-on, \
-         sqrt(stated^2 + 2 between^2); of each newtonometer at rest, and where it is largest",
+         sqrt(stated^2 + 2 between^2), and expanded; of each newtonometer at rest, and where it is largest",
     );
+    let expanded = percent(report.coverage);
     let columns = [
         ("newtonometer", Align::Left),
         ("force, g", Align::Left),
@@ -264,6 +265,7 @@ fn readings(screen: &mut Screen, report: &UnitHistoryReport) {
         ("between", Align::Right),
         ("interval", Align::Left),
         ("after", Align::Right),
+        (&expanded, Align::Right),
         ("due", Align::Left),
     ];
     let mut table = Table::new(1, columns);
@@ -273,7 +275,7 @@ fn readings(screen: &mut Screen, report: &UnitHistoryReport) {
     screen.table(table);
 }
 
-fn reading(r: &ReadingHistory) -> [Cell; 7] {
+fn reading(r: &ReadingHistory) -> [Cell; 8] {
     let micro_g = |value: f64| Cell::from(two_digits(value / MICRO_G));
     [
         r.axis.to_string().into(),
@@ -282,6 +284,7 @@ fn reading(r: &ReadingHistory) -> [Cell; 7] {
         micro_g(r.between),
         interval(r.between_interval, |value| two_digits(value / MICRO_G)).into(),
         micro_g(r.after_switch_on),
+        r.expanded_after_switch_on.map_or_else(Cell::default, micro_g),
         r.due.as_ref().map_or_else(String::new, |due| due.date.to_string()).into(),
     ]
 }

@@ -178,6 +178,9 @@ pub struct ReadingHistory {
     /// Standard uncertainty after a switch-on, `sqrt(stated^2 + 2 between^2)`: the session of the calibration and the next one deviate
     /// from their mean independently [m/s^2].
     pub after_switch_on: f64,
+    /// Its expanded uncertainty for the coverage of the report, all likely components between sessions considered [m/s^2]; null but of the
+    /// readings that are shown.
+    pub expanded_after_switch_on: Option<f64>,
     /// When the reading leaves its limit.
     pub due: Option<DueDate>,
 }
@@ -229,17 +232,9 @@ impl UnitHistoryReport {
         self.differs() && self.parameters.iter().all(|p| !p.scatters && !p.drifts)
     }
 
-    /// The readings to show of each newtonometer: at rest, and the one least certain after a switch-on.
+    /// The readings to show.
     pub fn shown_readings(&self) -> Vec<&ReadingHistory> {
-        let mut shown = Vec::new();
-        for axis in 1..=3 {
-            let of_axis = || self.readings.iter().filter(|r| r.axis == axis);
-            let at_rest = of_axis().find(|r| r.force == [0.0; 3]);
-            let worst = of_axis().max_by(|a, b| a.after_switch_on.total_cmp(&b.after_switch_on));
-            let other = worst.filter(|worst| worst.force != [0.0; 3]);
-            shown.extend(at_rest.into_iter().chain(other));
-        }
-        shown
+        shown_readings(&self.readings).into_iter().map(|n| &self.readings[n]).collect()
     }
 
     /// Whether a reading is within its limit, where one was given, and the calibration that compensates it has no objection.
@@ -251,4 +246,17 @@ impl UnitHistoryReport {
     pub fn has_acceptable_last(&self) -> bool {
         self.sessions.last().is_none_or(|session| session.acceptable)
     }
+}
+
+/// The readings to show of each newtonometer: at rest, and the one least certain after a switch-on.
+pub(crate) fn shown_readings(readings: &[ReadingHistory]) -> Vec<usize> {
+    let mut shown = Vec::new();
+    for axis in 1..=3 {
+        let of_axis = || (0..readings.len()).filter(|n| readings[*n].axis == axis);
+        let at_rest = of_axis().find(|n| readings[*n].force == [0.0; 3]);
+        let worst = of_axis().max_by(|a, b| readings[*a].after_switch_on.total_cmp(&readings[*b].after_switch_on));
+        let other = worst.filter(|worst| at_rest != Some(*worst));
+        shown.extend(at_rest.into_iter().chain(other));
+    }
+    shown
 }

@@ -11,7 +11,7 @@ use super::calibrated::{Basis, Calibrated, Finder, series, shared_changes, singl
 use super::comparable::Compared;
 use crate::document::{
     DeviatingSession, DueDate, Program, ReadingHistory, SamenessSummary, UNIT_HISTORY_SCHEMA, UnitHistoryReport,
-    UnitParameter,
+    UnitParameter, shown_readings,
 };
 use crate::quantity::Date;
 
@@ -149,6 +149,13 @@ pub fn common_names(calibrations: &[&Calibrated]) -> Vec<String> {
     of_unit.filter(|p| in_all(&p.name)).map(|p| p.name.clone()).collect()
 }
 
+/// The error of a compensated reading as a combination of parameters.
+struct Combination {
+    force: Vector3<f64>,
+    axis: usize,
+    shares: Vec<(String, f64)>,
+}
+
 struct Job<'a> {
     own: &'a [&'a Calibrated],
     others: &'a [Vec<&'a Calibrated>],
@@ -248,6 +255,19 @@ impl Job<'_> {
 
     /// What the history means for a reading that the last calibration compensates: at forces along the axes, over the range.
     fn readings(&self) -> Vec<ReadingHistory> {
+        let read = self.combinations().into_iter().filter_map(|of| Some((self.reading(&of)?, of)));
+        let (mut readings, combinations): (Vec<ReadingHistory>, Vec<Combination>) = read.unzip();
+        for n in shown_readings(&readings) {
+            let all = self.combination(&combinations[n].shares, Basis::Data);
+            let likely = all.and_then(|all| Likely::of(&all, self.curve, &self.quantiles));
+            let law = likely.map(|likely| likely.after_switch_on(readings[n].stated.powi(2)));
+            readings[n].expanded_after_switch_on = law.map(|law| law.interval(self.request.coverage)[1]);
+        }
+        readings
+    }
+
+    /// Force, newtonometer, and what the error of its reading there is made of.
+    fn combinations(&self) -> Vec<Combination> {
         let Some((last, terms)) = self.own.last().and_then(|last| Some((last, last.terms.clone()?))) else {
             return Vec::new();
         };
@@ -257,17 +277,17 @@ impl Job<'_> {
         let Some(compensated) = Compensated::new(terms, covariance) else { return Vec::new() };
         let along = |axis: usize| PARTS.map(|part| Vector3::ith(axis, part * last.range));
         let forces = std::iter::once(Vector3::zeros()).chain((0..3).flat_map(along));
-        let mut readings = Vec::new();
+        let mut combinations = Vec::new();
         for force in forces {
             let Some(sensitivity) = compensated.sensitivity(&force) else { continue };
             for axis in 0..3 {
                 let row = sensitivity.row(axis);
                 let shares = names.iter().zip(row.iter()).filter(|(_, c)| **c != 0.0);
-                let combination: Vec<(String, f64)> = shares.map(|(name, c)| (name.clone(), *c)).collect();
-                readings.extend(self.reading(force, axis, &combination));
+                let shares = shares.map(|(name, c)| (name.clone(), *c)).collect();
+                combinations.push(Combination { force, axis, shares });
             }
         }
-        readings
+        combinations
     }
 
     /// What terms that the last calibration lacks added to a reading, as the latest calibration that has them determined [m/s^2].
@@ -279,12 +299,13 @@ impl Job<'_> {
         lacking.map(|(_, term)| term.coefficient * term.monomial.value(force.into())).sum()
     }
 
-    fn reading(&self, force: Vector3<f64>, axis: usize, combination: &[(String, f64)]) -> Option<ReadingHistory> {
-        let all = self.combination(combination, Basis::Data)?;
+    fn reading(&self, of: &Combination) -> Option<ReadingHistory> {
+        let Combination { force, axis, ref shares } = *of;
+        let all = self.combination(shares, Basis::Data)?;
         let between = self.between(&all)?;
         let last = *self.own.last()?;
         let places: Vec<(usize, f64)> =
-            combination.iter().map(|(name, c)| Some((last.place(name)?, *c))).collect::<Option<_>>()?;
+            shares.iter().map(|(name, c)| Some((last.place(name)?, *c))).collect::<Option<_>>()?;
         let stated = last.variance(&places).max(0.0);
         let point = all[0].points().last()?;
         let due = self.request.limit.and_then(|limit| {
@@ -304,6 +325,7 @@ impl Job<'_> {
             between_interval: between.interval.map(f64::sqrt),
             // The session of the calibration deviates from the mean of all as the next one does.
             after_switch_on: (stated + 2.0 * between.variance).sqrt(),
+            expanded_after_switch_on: None,
             due,
         })
     }
