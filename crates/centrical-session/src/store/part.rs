@@ -5,8 +5,10 @@ use std::path::{Path, PathBuf};
 use centrical_table::{Cell, TypedReader, TypedWriter};
 
 use super::contradiction::contradiction;
-use super::row::{Row, sha256};
-use super::schema::{Depth, ENTRIES, ROW_VERSION, ROWS_SCHEMA, Read, SCHEMA_NOTE, VERSION, cells, columns};
+use super::row::{Row, Status, sha256};
+use super::schema::{
+    Depth, ENTRIES, ROW_VERSION, ROWS_SCHEMA, Read, SCHEMA_NOTE, STATUS, STATUSES, VERSION, cells, columns,
+};
 use crate::error::{Error, Place, quoted};
 
 /// Rows of a row group: a MB of covariances, which is what a reader holds of a part.
@@ -90,6 +92,11 @@ impl Part {
                 if let (ROW_VERSION, Cell::Integer(version @ VERSION_BEYOND..)) = (entry.column.name, &cell) {
                     let expected = format!("{VERSION} or an older one; a newer program reads newer ones");
                     return Err(self.wrong(group, at, ROW_VERSION, version.to_string(), expected));
+                }
+                if let (STATUS, Cell::Text(word)) = (entry.column.name, &cell)
+                    && Status::named(word).is_none()
+                {
+                    return Err(self.wrong(group, at, STATUS, quoted(word.as_bytes()), STATUSES.to_owned()));
                 }
                 if let Some(row) = row {
                     (entry.set)(row, Read(cell));

@@ -13,6 +13,10 @@ pub(super) const SCHEMA_NOTE: &str = "centrical_schema";
 /// The column with the version of a row.
 pub(super) const ROW_VERSION: &str = "row_version";
 
+/// The column with the word for whether a calibration was done, and the words there are.
+pub(super) const STATUS: &str = "status";
+pub(super) const STATUSES: &str = "\"done\" or \"failed\"";
+
 /// The schema's present version.
 pub(super) const VERSION: i64 = 2;
 
@@ -47,7 +51,7 @@ pub(super) struct Read(pub Cell);
 pub(super) const ENTRIES: &[Entry] = &[
     Entry { column: TypedColumn { name: "key", kind: Kind::Text }, depth: Depth::Summary, get: |r| text(&r.key), set: |r, c| r.key = c.text() },
     Entry { column: TypedColumn { name: ROW_VERSION, kind: Kind::Integer }, depth: Depth::Summary, get: |_| Cell::Integer(VERSION), set: |_, _| () },
-    Entry { column: TypedColumn { name: "status", kind: Kind::Text }, depth: Depth::Summary, get: |r| text(r.status.word()), set: |r, c| r.status = Status::named(&c.text()) },
+    Entry { column: TypedColumn { name: STATUS, kind: Kind::Text }, depth: Depth::Summary, get: |r| text(r.status.word()), set: |r, c| r.status = Status::named(&c.text()).unwrap_or_default() },
     Entry { column: TypedColumn { name: "message", kind: Kind::Text }, depth: Depth::Summary, get: |r| text(&r.failure.message), set: |r, c| r.failure.message = c.text() },
     Entry { column: TypedColumn { name: "file", kind: Kind::Text }, depth: Depth::Summary, get: |r| text(&r.failure.file), set: |r, c| r.failure.file = c.text() },
     Entry { column: TypedColumn { name: "place", kind: Kind::Text }, depth: Depth::Summary, get: |r| text(&r.failure.place), set: |r, c| r.failure.place = c.text() },
@@ -112,8 +116,9 @@ impl Status {
         }
     }
 
-    fn named(word: &str) -> Self {
-        if word == "failed" { Self::Failed } else { Self::Done }
+    /// The one of that word.
+    pub fn named(word: &str) -> Option<Self> {
+        [Self::Done, Self::Failed].into_iter().find(|status| status.word() == word)
     }
 }
 

@@ -7,6 +7,7 @@ use std::thread;
 use std::time::Instant;
 
 use centrical_session::{Depth, Row, RowPrior, RowTerm, Selection, SharedInfluence, Store, unwatched};
+use centrical_table::{Cell, Kind, TypedColumn, TypedWriter};
 use tempfile::TempDir;
 
 /// A term of the error model.
@@ -169,6 +170,21 @@ fn a_flipped_bit_is_refused_or_changes_nothing() {
         }
     }
     assert!(refused > whole.len() / 3 / 2, "{refused} of {}", whole.len() / 3);
+}
+
+/// A word for the status that another program wrote is no calibration that was done.
+#[test]
+fn an_unknown_status_is_refused() {
+    let folder = TempDir::new().unwrap();
+    let store = Store::create(folder.path()).unwrap();
+    let columns = [("key", Kind::Text), ("status", Kind::Text)].map(|(name, kind)| TypedColumn { name, kind });
+    let file = folder.path().join("rows/part.parquet");
+    let mut part = TypedWriter::create(&file, &columns, &[("centrical_schema", "centrical-rows/2")]).unwrap();
+    part.write_group(&[vec![Cell::Text("0".repeat(64)), Cell::Text("tried".to_owned())]]).unwrap();
+    part.finish().unwrap();
+    let error = store.rows(Selection::default(), &unwatched).unwrap().next().unwrap().unwrap_err().to_string();
+    let expected = "part.parquet, row 1, status: found \"tried\", expected \"done\" or \"failed\"";
+    assert!(error.contains(expected), "{error}");
 }
 
 /// Each edit of a row, and the column and the words of the error.
