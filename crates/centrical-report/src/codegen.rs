@@ -15,7 +15,7 @@ mod term;
 mod vectors;
 
 use centrical_compensate::{Compensation, NotInvertible, Term};
-use centrical_session::{CalibrationResult, OutputSummary};
+use centrical_session::{CalibrationResult, ObjectionName, OutputSummary};
 
 use self::model::Model;
 pub use self::term::NamedTerm;
@@ -29,12 +29,14 @@ pub fn heading(result: &CalibrationResult) -> Vec<String> {
         let name = (Language::English.messages().words.axes)(&axes.name);
         format!("Specific forces in the {name}; readings and range in the axes of the newtonometers.")
     });
+    let objections: Vec<&str> = result.objections().iter().map(|of| ObjectionName::from(of).word()).collect();
+    let refused = (!objections.is_empty()).then(|| format!("NOT ACCEPTABLE: {}.", objections.join(", ")));
     let lines = vec![
         format!("Compensation of {}{calibrated}.", session.unit()),
         session.title.clone(),
         format!("Made by {} {}; not to be edited.", result.program.name, result.program.version),
     ];
-    lines.into_iter().chain(axes).collect()
+    lines.into_iter().chain(refused).chain(axes).collect()
 }
 
 /// A file of source code.

@@ -113,7 +113,13 @@ impl Laboratory {
                 return refuse(table, "address.country", quoted(country.as_bytes()), expected);
             }
         }
-        let Certificate { begun, ended, issued, .. } = self.certificate;
+        let Certificate { begun, ended, issued, received, ref number, ref replaces, .. } = self.certificate;
+        if let Some(received) = received.filter(|received| *received > begun) {
+            return refuse("[certificate]", "received", received.to_string(), &format!("{begun} (begun) or earlier"));
+        }
+        if replaces.as_ref() == Some(number) {
+            return refuse("[certificate]", "replaces", quoted(number.as_bytes()), "the number of another certificate");
+        }
         if ended < begun {
             return refuse("[certificate]", "ended", ended.to_string(), &format!("{begun} (begun) or later"));
         }
@@ -137,18 +143,13 @@ impl Laboratory {
 }
 
 impl Environment {
-    /// A condition that cannot be, by its value or as far as it went from it: its key, what was found and what was expected.
+    /// A condition that no laboratory has, by its value or as far as it went from it: its key, what was found and what was expected.
     fn impossible(&self) -> Option<(&'static str, String, String)> {
         let conditions = [
-            ("temperature", Some(&self.temperature), (-273.15, 1e3), "degrees Celsius from -273.15 to 1000"),
-            ("humidity", self.humidity.as_ref(), (0.0, 100.0), "% of relative humidity from 0 to 100"),
-            ("pressure", self.pressure.as_ref(), (0.0, 1e3), "kPa from 0 to 1000"),
-            (
-                "unit_temperature",
-                self.unit_temperature.as_ref(),
-                (-273.15, 1e3),
-                "degrees Celsius from -273.15 to 1000",
-            ),
+            ("temperature", Some(&self.temperature), (-50.0, 100.0), "degrees Celsius from -50 to 100"),
+            ("humidity", self.humidity.as_ref(), (1.0, 100.0), "% of relative humidity from 1 to 100"),
+            ("pressure", self.pressure.as_ref(), (30.0, 120.0), "kPa from 30 to 120"),
+            ("unit_temperature", self.unit_temperature.as_ref(), (-100.0, 200.0), "degrees Celsius from -100 to 200"),
         ];
         for (key, condition, (low, high), meaning) in conditions {
             let Some(Condition { value, range }) = condition else { continue };
@@ -186,12 +187,20 @@ mod tests {
     /// Each change of the example is refused with the place, what was found and what was expected.
     #[test]
     fn mistakes_are_named() {
-        let cases: [(&str, &str, &[&str]); 14] = [
+        let cases: [(&str, &str, &[&str]); 18] = [
             ("[customer]", "[costumer]", &["line", "costumer"]),
             ("post_code", "postcode", &["line", "postcode"]),
             ("country = \"RU\"", "country = \"Russia\"", &["address.country", "Russia", "ISO 3166-1"]),
             ("ended = 2026-10-07", "ended = 2026-09-07", &["[certificate], ended", "2026-09-07", "2026-10-05"]),
             ("ended = 2026-10-07", "ended = 2026-10-07T10:00:00", &["line", "no day"]),
+            ("value = 20.3", "value = 293.3", &["[environment], temperature", "293.3", "-50 to 100"]),
+            ("value = 45", "value = 0.45", &["[environment], humidity", "0.45", "1 to 100"]),
+            ("value = 100.9", "value = 757", &["[environment], pressure", "757", "30 to 120"]),
+            (
+                "received = 2026-10-01",
+                "received = 2026-10-06",
+                &["[certificate], received", "2026-10-05 (begun) or earlier"],
+            ),
             ("issued = 2026-10-09", "issued = 2026-10-06", &["[certificate], issued", "2026-10-06", "2026-10-07"]),
             ("authorises = true", "authorises = false", &["[[person]]", "nobody"]),
             ("low = -0.15", "low = 0.2", &["[[decision.limit]] 1, low", "0.2", "below high"]),

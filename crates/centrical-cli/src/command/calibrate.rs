@@ -10,7 +10,7 @@ use centrical_session::{
     calibrate_without, claim_folder, refuse_date, refuse_inputs,
 };
 
-use crate::command::report::{Documents, is_within_limits};
+use crate::command::report::{Documents, is_within_limits, remark_other_days};
 use crate::outcome::Outcome;
 use crate::output::remark;
 use crate::printing::Printing;
@@ -91,6 +91,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
         add_result(store, &result, false)?;
     }
     let issuer = laboratory.map(|file| read_issuer(file, &result)).transpose()?;
+    remark_other_days(issuer.as_ref().and_then(|issuer| issuer.other_days(&result)).as_deref());
     if let Some(folder) = out {
         write_all_documents(&result, issuer.as_ref(), arguments.documents.language.into(), folder)?;
     }

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use centrical_report::compensation_text;
+use centrical_report::{compensation_text, verdict_text};
 use centrical_session::{
     Axes, CompensationRequest, Dimension, Error, NotThatQuantity, Quantity, compensate, unwatched,
 };
@@ -40,7 +40,7 @@ pub struct Arguments {
     printing: Printing,
 }
 
-/// Runs the command.
+/// Runs the command. Exit code 1 when a reading is out of range, or there is an objection to the calibration.
 pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let request = CompensationRequest {
         result: arguments.result.clone(),
@@ -51,10 +51,16 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
         within_calibration: arguments.within_calibration,
         axes: arguments.axes.as_deref().map(Axes::from),
     };
-    let (compensated, certificate) = compensate(&request, &unwatched)?;
-    let text = || compensation_text(&compensated, &certificate, &arguments.out);
-    arguments.printing.show(text, || compensated.report(&request, &certificate).to_json())?;
-    Ok(Outcome::acceptable(compensated.outside == 0))
+    let (compensated, certificate, objections) = compensate(&request, &unwatched)?;
+    let text = || {
+        let mut screen = compensation_text(&compensated, &certificate, &arguments.out);
+        if !objections.is_empty() {
+            screen.add(verdict_text(&objections, true));
+        }
+        screen
+    };
+    arguments.printing.show(text, || compensated.report(&request, &certificate, &objections).to_json())?;
+    Ok(Outcome::acceptable(compensated.outside == 0 && objections.is_empty()))
 }
 
 /// "200 g", or a plain number in m/s^2.

@@ -3,9 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use centrical_report::{
-    DocumentRequest, Language, Screen, UnitStatement, UnitVerdict, unit_text, verdict_text, write_documents,
+    DocumentRequest, Emphasis, Language, Screen, UnitStatement, UnitVerdict, unit_text, verdict_text, write_documents,
 };
-use centrical_session::{Axes, CalibrationResult, DocumentKind, DocumentsReport, Error};
+use centrical_session::{Axes, CalibrationResult, DocumentKind, DocumentsReport, Error, Place};
 use clap::ValueEnum;
 
 use crate::command::compensate::acceleration;
@@ -106,6 +106,10 @@ impl From<LanguageName> for Language {
 
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
+    if written(arguments).is_empty() && !arguments.printing.json {
+        let expected = "--html, --pdf, --dcc or --code with its name";
+        return Err(Error::content(&arguments.result, Place::Whole, "no document asked for", expected));
+    }
     let documents = write_documents(&DocumentRequest {
         result: arguments.result.clone(),
         html: arguments.html.clone(),
@@ -120,6 +124,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
         axes: arguments.documents.axes.as_deref().map(Axes::from),
         language: arguments.documents.language.into(),
     })?;
+    remark_other_days(documents.other_days.as_deref());
     let (result, unit) = (documents.result, documents.unit);
     let objections = result.objections();
     let is_within = is_within_limits(unit.as_ref());
@@ -132,6 +137,15 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let json = || DocumentsReport::of(&arguments.result, &result, &written(arguments)).to_json();
     arguments.printing.show(text, json)?;
     Ok(Outcome::acceptable(objections.is_empty() && is_within))
+}
+
+/// Remarks that a certificate is of other days than the session.
+pub fn remark_other_days(words: Option<&str>) {
+    let mut screen = Screen::default();
+    if let Some(words) = words {
+        screen.marked(Emphasis::Warning, "OTHER DAYS", words);
+    }
+    remark(&screen);
 }
 
 /// Whether the unit keeps the limits that were asked for; limits that were not are kept.

@@ -197,3 +197,32 @@ fn peak_memory(copy: &Copy, rows: u64) -> u64 {
     assert!(peak > 0, "{rows} rows: the program ended unseen");
     peak
 }
+
+/// A calibration with an objection compensates, says so, and so does the code that is made of it.
+#[test]
+fn a_calibration_with_an_objection_is_named() {
+    let copy = Copy::new();
+    copy.edit("records/m05.csv", |text| crate::watch::disturbed(&text));
+    assert_eq!(copy.calibrate(&["-q"]).status.code(), Some(1));
+    let output = compensate(&copy, &["f.csv"]);
+    assert!(output.status.code() == Some(1) && text(&output).contains("NOT ACCEPTABLE"), "{}", text(&output));
+    let output = compensate(&copy, &["f.csv", "--json"]);
+    let document: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!((&document["acceptable"], output.status.code()), (&false.into(), Some(1)));
+    assert_eq!(copy.run(&["report", "result.json", "--code", "code"]).status.code(), Some(1));
+    let code = fs::read_to_string(copy.out().join("code/centrical_compensate.c")).unwrap();
+    assert!(code.contains("NOT ACCEPTABLE: "), "{}", &code[..400]);
+}
+
+/// The session that names columns is one of the unit that was calibrated.
+#[test]
+fn a_session_of_another_unit_is_refused() {
+    let copy = calibrated();
+    let session = copy.session();
+    let own = ["f.csv", "--session", session.to_str().unwrap()];
+    assert!(compensate(&copy, &own).status.success());
+    copy.edit("experiment.toml", |text| text.replace("serial = \"0001\"", "serial = \"0002\""));
+    let output = compensate(&copy, &own);
+    let expected = "found a unit of the serial number \"0002\", expected \"0001\", as in result.json";
+    assert!(output.status.code() == Some(2) && text(&output).contains(expected), "{}", text(&output));
+}

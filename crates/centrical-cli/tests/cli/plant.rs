@@ -305,6 +305,9 @@ fn documents_say_what_the_past_means_for_a_reading() {
         ],
     );
     assert_ne!(made.status.code(), Some(2), "{made:?}");
+    // The laboratory's file is of another certificate.
+    let said = String::from_utf8_lossy(&made.stderr).into_owned();
+    assert!(said.starts_with("OTHER DAYS  found [certificate] begun = 2026-10-05"), "{said}");
     let page = fs::read_to_string(folder.path().join("r.html")).unwrap();
     assert!(page.contains("After a switch-on"));
     // Three calibrations up to the day of this one; the fourth came later.

@@ -229,3 +229,47 @@ fn usage() {
     let long = message(&["calibrate", "nowhere", "--hold-out", &"Z".repeat(4000)]);
     assert!(long.len() < 1200 && long.contains("expected MOUNTING:PLATEAU such as 4:3"), "{long}");
 }
+
+/// Means of plateaus in another unit, or with the sign of an axis reversed, have no samples to ask: their scale says so.
+#[test]
+fn means_in_another_unit_or_sign_are_refused() {
+    for (factor, name) in [(1.0 / 9.80665, "in g"), (-1.0, "reversed"), (0.5, "halved")] {
+        let copy = Copy::new();
+        let session = copy.session();
+        assert!(copy.run(&["reduce", session.to_str().unwrap(), "--out", "reduced"]).status.success());
+        let file = copy.out().join("reduced/plateaus.csv");
+        let table = fs::read_to_string(&file).unwrap();
+        let names: Vec<&str> = table.lines().next().unwrap().split(',').collect();
+        let mean = names.iter().position(|name| *name == "mean_2").expect("a column of means");
+        let scaled = |line: &str| {
+            let mut cells: Vec<String> = line.split(',').map(str::to_owned).collect();
+            cells[mean] = cells[mean].parse::<f64>().map_or(cells[mean].clone(), |value| (factor * value).to_string());
+            cells.join(",") + "\n"
+        };
+        fs::write(&file, table.lines().map(scaled).collect::<String>()).unwrap();
+        let run = copy.run(&["calibrate", "reduced", "--out", "out"]);
+        let message = String::from_utf8(run.stderr).unwrap();
+        assert_eq!(run.status.code(), Some(2), "{name}: {message}");
+        assert!(message.contains("times the specific force (G0_22 = "), "{name}: {message}");
+        assert!(!copy.out().join("out/result.json").exists());
+    }
+}
+
+/// A window that ends before it begins, one of a session, and a report without a document.
+#[test]
+fn what_cannot_be_done_is_refused() {
+    let copy = Copy::new();
+    assert!(copy.calibrate(&["-q"]).status.success());
+    let session = copy.session();
+    let (session, record) = (session.to_str().unwrap(), session.join("records/m01.csv"));
+    for (arguments, part) in [
+        (&["noise", record.to_str().unwrap(), "--from", "5", "--to", "4"][..], "expected a beginning before the end"),
+        (&["noise", session, "--plateau", "1:1", "--from", "5"], "expected one plateau of the session"),
+        (&["report", "result.json"], "expected --html, --pdf, --dcc or --code"),
+        (&["report", "result.json", "--html", "one", "--code", "one"], "expected two names"),
+    ] {
+        let run = copy.run(arguments);
+        let message = String::from_utf8(run.stderr).unwrap();
+        assert!(run.status.code() == Some(2) && message.contains(part), "{arguments:?}: {message}");
+    }
+}

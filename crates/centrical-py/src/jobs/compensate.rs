@@ -26,7 +26,7 @@ pub fn compensate(
     let request = CompensationRequest { result, record, out, session, range, within_calibration, axes };
     progress::run(py, &shown, |work| {
         work.expect(request.record.metadata().map_or(0, |metadata| metadata.len()));
-        let (compensated, certificate) = session::compensate(&request, &|bytes| work.advance(bytes))?;
-        compensated.report(&request, &certificate).to_json()
+        let (compensated, certificate, objections) = session::compensate(&request, &|bytes| work.advance(bytes))?;
+        compensated.report(&request, &certificate, &objections).to_json()
     })
 }

@@ -1,7 +1,7 @@
 //! The calibration certificate on paper: the items of ISO/IEC 17025:2017, 7.8.2 and 7.8.4, in their order.
 
 use centrical_session::{
-    Address, CalibrationResult, Condition, Contact, Laboratory, ModelSummary, PositionSummary, UnitHistoryReport,
+    Address, CalibrationResult, Condition, Contact, Date, Laboratory, ModelSummary, PositionSummary, UnitHistoryReport,
     customary,
 };
 
@@ -32,6 +32,17 @@ pub struct Issuer {
     pub past: Option<UnitHistoryReport>,
     /// Its mark.
     pub logo: Option<Picture>,
+}
+
+impl Issuer {
+    /// In words, that the file has the calibration on other days than that of the session: most often it is of another certificate.
+    pub fn other_days(&self, result: &CalibrationResult) -> Option<String> {
+        let (begun, ended) = (self.laboratory.certificate.begun, self.laboratory.certificate.ended);
+        let day = result.session.date.parse::<Date>().ok().filter(|day| *day < begun || *day > ended)?;
+        Some(format!(
+            "found [certificate] begun = {begun} and ended = {ended}, expected the day of the session between them, {day}"
+        ))
+    }
 }
 
 /// The certificate, with the results `before` an adjustment beside those after it if the unit was adjusted.

@@ -53,6 +53,8 @@ pub struct Documents {
     pub result: CalibrationResult,
     /// What the laboratory's decision says of the unit, where one was asked for.
     pub unit: Option<UnitStatement>,
+    /// That the laboratory's file has the calibration on other days, in words.
+    pub other_days: Option<String>,
 }
 
 /// Writes the documents and returns what they are made of.
@@ -81,6 +83,9 @@ pub fn write_documents(request: &DocumentRequest) -> Result<Documents, Error> {
     let listed = |files: &[Option<&PathBuf>]| files.iter().flatten().map(|file| (*file).clone()).collect::<Vec<_>>();
     let inputs = [listed(&inputs), request.past.clone()].concat();
     refuse_inputs(&listed(&outputs), &inputs)?;
+    if let Some(code) = request.code.as_ref().filter(|code| outputs.contains(&Some(*code))) {
+        return Err(Error::content(code, Place::Whole, "a document of the name of the folder for code", "two names"));
+    }
     let language = request.language;
     let unit = issuer.as_ref().and_then(|issuer| issuer.unit.as_ref());
     if let Some(file) = &request.html {
@@ -106,7 +111,8 @@ pub fn write_documents(request: &DocumentRequest) -> Result<Documents, Error> {
     if let Some(folder) = &request.code {
         write_source(&result, request, &inputs, folder)?;
     }
-    Ok(Documents { unit: issuer.and_then(|issuer| issuer.unit), result })
+    let other_days = issuer.as_ref().and_then(|issuer| issuer.other_days(&result));
+    Ok(Documents { unit: issuer.and_then(|issuer| issuer.unit), other_days, result })
 }
 
 /// Writes the report and its plots to a folder, and the certificates if the data of the laboratory are given.

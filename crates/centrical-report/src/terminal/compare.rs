@@ -6,7 +6,7 @@ use super::chance::chance;
 use super::screen::{Emphasis, Screen};
 use super::symbols::legend;
 use super::table::{Align, Cell, Table};
-use crate::number::{unsigned_zero, with_uncertainty};
+use crate::number::{counted, unsigned_zero, with_uncertainty};
 
 /// Calibrations of one unit, two by two.
 pub fn comparison_text(report: &ComparisonReport) -> Screen {
@@ -36,6 +36,14 @@ fn one_pair(screen: &mut Screen, report: &ComparisonReport, pair: &PairCompariso
     screen.gap();
     let years = pair.years.map_or(String::new(), |years| format!(", {years:.2} years between them"));
     screen.say(0, &format!("RESULT {} LESS RESULT {}{years}", pair.second + 1, pair.first + 1));
+    if pair.same_files > 0 {
+        let files = counted(pair.same_files, "file");
+        screen.marked(
+            Emphasis::Warning,
+            "SAME FILES",
+            &format!("both rest on {files} with the same bytes: one measurement, not two"),
+        );
+    }
     cautions(screen, report, pair);
     differences(screen, pair);
     let beyond = pair.differences.iter().filter(|d| d.e_n.abs() > 1.0).count();

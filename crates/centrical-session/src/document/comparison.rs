@@ -61,6 +61,8 @@ pub struct PairComparison {
     /// Coefficients that priors alone determine in one of the two: they show no change.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub by_priors_alone: Vec<String>,
+    /// Files with the same bytes that both rest on, but for settings: of one measurement they are all.
+    pub same_files: usize,
     /// Years between the two, if they were given.
     pub years: Option<f64>,
     /// The coefficients that both determine.
@@ -166,6 +168,7 @@ impl PairComparison {
             only_in_first: Vec::new(),
             only_in_second: Vec::new(),
             by_priors_alone: Vec::new(),
+            same_files: 0,
             years,
             differences: comparison.differences.iter().map(summary).collect(),
             chi_squared: comparison.chi_squared,

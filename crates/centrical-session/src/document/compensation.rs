@@ -4,6 +4,7 @@ use std::path::Path;
 
 use serde::Serialize;
 
+use super::documents::ObjectionName;
 use super::json;
 use super::result::Program;
 use crate::error::Error;
@@ -24,6 +25,10 @@ pub struct CompensationReport {
     pub record: String,
     /// The file with the specific forces.
     pub out: String,
+    /// Whether the calibration is acceptable.
+    pub acceptable: bool,
+    /// The objections to it.
+    pub objections: Vec<ObjectionName>,
     /// Decimals of the specific forces in m/s^2; null where they are written to the last bit.
     pub decimals: Option<u32>,
     /// Readings.
@@ -74,6 +79,8 @@ impl CompensationReport {
             result: name(files.result),
             record: name(files.record),
             out: name(files.out),
+            acceptable: true,
+            objections: Vec::new(),
             decimals: None,
             readings: 0,
             range,

@@ -1,11 +1,11 @@
 //! The whole job for one session: what the command, a fleet's worker and a notebook all call.
 
 use centrical::uncertainty::BetweenRests;
-use centrical::{Calibration, Data, FitError, MeasurementModel, OnProgress, advance};
+use centrical::{Calibration, Data, FitError, Group, MeasurementModel, OnProgress, advance};
 
 use super::reduce::reduce;
 use crate::document::{BetweenRestsSummary, CalibrationResult, Method, RecordFindings};
-use crate::error::Error;
+use crate::error::{Error, Place};
 use crate::experiment::{PlateauName, Session};
 use crate::reduced::Reduced;
 
@@ -184,6 +184,7 @@ pub(super) fn as_result(
     reduced: &Reduced,
     progress: OnProgress,
 ) -> Result<CalibrationResult, Error> {
+    refuse_scale(calibration, session)?;
     let result = CalibrationResult::from(calibration, session, reduced, progress);
     let result = result.map_err(|source| Error::fit(&session.file, source))?;
     let findings = RecordFindings::stated(session)?;
@@ -192,4 +193,23 @@ pub(super) fn as_result(
         Some(findings) => findings.added_to(result),
         None => result,
     })
+}
+
+/// A scale error that is beyond it, by three standard uncertainties, is of readings in another unit or with the other sign: a nominal scale is
+/// known better.
+const LARGEST_SCALE_ERROR: f64 = 0.3;
+
+/// Records are asked whether another unit or sign fits better; means have no samples to ask.
+fn refuse_scale(calibration: &Calibration, session: &Session) -> Result<(), Error> {
+    let (model, fit) = (calibration.data().model(), calibration.fit());
+    for (j, parameter) in model.parameters().iter().enumerate().filter(|(_, p)| p.group == Group::Scale) {
+        let Some((error, variance)) = fit.value(j).zip(fit.covariance(j, j)) else { continue };
+        if error.abs() - 3.0 * variance.sqrt() > LARGEST_SCALE_ERROR {
+            let found =
+                format!("readings of {:.4} times the specific force ({} = {error:.4})", 1.0 + error, parameter.name);
+            let expected = "0.7 to 1.3 times: readings in the stated unit, with the sign of their axis, and the nominal scale of raw output";
+            return Err(Error::content(&session.file, Place::Whole, found, expected));
+        }
+    }
+    Ok(())
 }

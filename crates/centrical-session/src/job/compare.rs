@@ -1,5 +1,6 @@
 //! Calibrations of one unit, two by two.
 
+use std::collections::HashSet;
 use std::path::Path;
 
 use centrical::uncertainty::{Comparison, Estimates, compare};
@@ -80,9 +81,19 @@ fn pair_of(
         only_in_first,
         only_in_second,
         by_priors_alone,
+        same_files: same_files(first, second),
         agree: same_unit && comparison.agrees(),
         ..PairComparison::of(second, &comparison, years, |name| [value(&a, name), value(&b, name)])
     })
+}
+
+/// Files of records or means with the same bytes in both.
+fn same_files(first: &CalibrationResult, second: &CalibrationResult) -> usize {
+    let measured = |result: &CalibrationResult| -> HashSet<String> {
+        let is_measured = |path: &str| !path.to_ascii_lowercase().ends_with(".toml");
+        result.inputs.iter().filter(|input| is_measured(&input.path)).map(|input| input.sha256.clone()).collect()
+    };
+    measured(first).intersection(&measured(second)).count()
 }
 
 /// The differences of `names` by the data alone. What both sessions share cancels, as far as it changes both alike.

@@ -11,6 +11,7 @@ use rayon::prelude::*;
 use super::axes::Axes;
 use crate::document::{
     CalibrationResult, CompensatedFiles, CompensationReport, FirstReading, OutputSummary, ReadingsBeyond,
+    ResultObjection,
 };
 use crate::error::{Error, Place};
 use crate::experiment::Session;
@@ -76,12 +77,15 @@ impl Calibrated {
     const ANYWHERE: Self = Self { limit: [f64::INFINITY; 3], is_demanded: false };
 }
 
-/// Compensates a record by the result of a calibration, and says where the inverse is unique. `progress` is called with the number
-/// of bytes read.
+/// Compensates a record by the result of a calibration, and says where the inverse is unique, and what objections there are to the result.
+/// `progress` is called with the number of bytes read.
 ///
 /// # Errors
-/// As [`compensate_record`]; and if the result has no error model that can be inverted.
-pub fn compensate(request: &CompensationRequest, progress: OnProgress) -> Result<(Compensated, Certificate), Error> {
+/// As [`compensate_record`]; if the result has no error model that can be inverted; and if the session is of another unit.
+pub fn compensate(
+    request: &CompensationRequest,
+    progress: OnProgress,
+) -> Result<(Compensated, Certificate, Vec<ResultObjection>), Error> {
     let result = CalibrationResult::read(&request.result)?;
     let result = match &request.axes {
         Some(axes) => axes.of(result, &request.result)?,
@@ -102,6 +106,7 @@ pub fn compensate(request: &CompensationRequest, progress: OnProgress) -> Result
                                 be compensated has them";
                 return Err(Error::content(&session.file, Place::Whole, "one file for each newtonometer", expected));
             }
+            refuse_another(&session, &result, &request.result)?;
             inputs.extend(session.files().into_iter().map(Path::to_owned));
             session.columns
         }
@@ -113,7 +118,31 @@ pub fn compensate(request: &CompensationRequest, progress: OnProgress) -> Result
     let compensated = rayon::scope(|_| {
         on_this_thread(&compensation, &calibrated, &request.record, &columns, &request.out, progress)
     })?;
-    Ok((compensated, *compensation.certificate()))
+    Ok((compensated, *compensation.certificate(), result.objections()))
+}
+
+/// Refuses a session of another unit than that of the result in `file`, or with another nominal output in counts or volts.
+fn refuse_another(session: &Session, result: &CalibrationResult, file: &Path) -> Result<(), Error> {
+    let refuse = |found: String, expected: String| {
+        Err(Error::content(&session.file, Place::Whole, found, format!("{expected}, as in {}", file.display())))
+    };
+    let names = [
+        ("model", &session.unit_model, &result.session.unit_model),
+        ("serial number", &session.unit_serial, &result.session.unit_serial),
+    ];
+    let other = names.into_iter().find(|(_, own, of)| !own.is_empty() && !of.is_empty() && own != of);
+    if let Some((what, own, of)) = other {
+        return refuse(format!("a unit of the {what} {own:?}"), format!("{of:?}"));
+    }
+    match (OutputSummary::of(session), &result.output) {
+        (Some(own), Some(of)) if own != *of => {
+            let nominal = |output: &OutputSummary| {
+                format!("{} of scale {:?} and bias {:?}", output.unit, output.scale, output.bias)
+            };
+            refuse(nominal(&own), nominal(of))
+        }
+        _ => Ok(()),
+    }
 }
 
 /// Compensates the record in `input` into `output`, CSV or Parquet by its name. The same bytes on any machine.
@@ -196,10 +225,17 @@ fn compensate_rows(
 
 impl Compensated {
     /// What became of the record of `request`, as a document.
-    pub fn report(&self, request: &CompensationRequest, certificate: &Certificate) -> CompensationReport {
+    pub fn report(
+        &self,
+        request: &CompensationRequest,
+        certificate: &Certificate,
+        objections: &[ResultObjection],
+    ) -> CompensationReport {
         let CompensationRequest { result, record, out, .. } = request;
         let first = |first: Option<FirstOutside>| first.map(|f| FirstReading { t: f.t, reading: f.reading });
         CompensationReport {
+            acceptable: objections.is_empty(),
+            objections: objections.iter().map(Into::into).collect(),
             decimals: self.decimals,
             readings: self.readings,
             outside_range: ReadingsBeyond { count: self.outside, first: first(self.first_outside) },

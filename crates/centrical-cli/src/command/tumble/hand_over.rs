@@ -7,7 +7,7 @@ use centrical_session::{CalibrationResult, Error, refuse_inputs};
 
 use super::arguments::Arguments;
 use crate::command::calibrate::{outputs, report};
-use crate::command::report::is_within_limits;
+use crate::command::report::{is_within_limits, remark_other_days};
 use crate::outcome::Outcome;
 
 /// The result in the folder.
@@ -30,6 +30,7 @@ impl Arguments {
         let out = self.out.as_deref();
         let laboratory = self.documents.laboratory.as_deref();
         let issuer = laboratory.map(|file| read_issuer(file, result)).transpose()?;
+        remark_other_days(issuer.as_ref().and_then(|issuer| issuer.other_days(result)).as_deref());
         if let Some(folder) = out {
             write(folder)?;
             write_all_documents(result, issuer.as_ref(), self.documents.language.into(), folder)?;

@@ -34,7 +34,8 @@ impl CalibrationResult {
     pub fn compensation_range(&self, terms: &[Term]) -> Result<f64, NotInvertible> {
         let calibrated = self.calibrated_range();
         let margin = Compensation::new(terms, calibrated)?.certificate().margin;
-        Ok(calibrated * margin.min(2.0))
+        // At the margin itself rounding decides whether the inverse is certain.
+        Ok(calibrated * (margin * (1.0 - 1e-9)).min(2.0))
     }
 
     /// A compensation by this result that gives specific forces in the axes that it is stated in.

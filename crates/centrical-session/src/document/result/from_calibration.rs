@@ -124,7 +124,7 @@ pub fn unit_name(model: &str, serial: &str) -> String {
 
 impl OutputSummary {
     /// That of a session, none if its unit puts out an acceleration.
-    fn of(session: &Session) -> Option<Self> {
+    pub(crate) fn of(session: &Session) -> Option<Self> {
         let columns = &session.columns.f;
         // The reciprocal of a reciprocal is the number to 15 digits.
         let written = |scale: f64| format!("{scale:.14e}").parse().unwrap_or(scale);

@@ -9,7 +9,7 @@ use centrical_table::{ColumnName, TableLines};
 use super::analysis::analyse_noise;
 use super::series::Series;
 use crate::document::NoiseAnalysis;
-use crate::error::Error;
+use crate::error::{Error, Place};
 use crate::experiment::{Folder, PlateauName, Session};
 use crate::record::{Columns, RECORD, named_columns};
 
@@ -45,7 +45,16 @@ pub struct NoiseRequest {
 /// [`Error`] naming the file, the place, what was found and what was expected.
 pub fn noise_of(request: &NoiseRequest, progress: OnProgress) -> Result<(NoiseAnalysis, Option<PlateauName>), Error> {
     let NoiseRequest { file, estimators, .. } = request;
+    let [from, to] = request.window;
+    let asked = || format!("--from {from} s and --to {to} s");
+    if from >= to {
+        return Err(Error::content(file, Place::Whole, asked(), "a beginning before the end"));
+    }
     if Session::is_named_by(file) {
+        if from.is_finite() || to.is_finite() {
+            let expected = "one plateau of the session by --plateau, or the file of a record";
+            return Err(Error::content(file, Place::Whole, asked(), expected));
+        }
         let (analysis, name) = noise_of_plateau(&Session::read(file)?, request.plateau, estimators, progress)?;
         return Ok((analysis, Some(name)));
     }
