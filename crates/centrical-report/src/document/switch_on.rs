@@ -91,12 +91,12 @@ fn readings(history: &UnitHistoryReport, language: Language) -> Table {
     let [stated, between, after] = [messages.this_calibration, messages.between_calibrations, messages.after_switch_on]
         .map(|m| format!("{m}, {ug}"));
     let columns = [
-        (messages.newtonometer, 0.16, Align::Left),
-        (&format!("{}, g", messages.specific_force), 0.17, Align::Left),
+        (messages.newtonometer, 0.19, Align::Left),
+        (&format!("{}, g", messages.specific_force), 0.16, Align::Left),
         (&stated, 0.15, Align::Right),
-        (&between, 0.22, Align::Right),
+        (&between, 0.21, Align::Right),
         (&after, 0.14, Align::Right),
-        ("U (95 %)", 0.16, Align::Right),
+        ("U (95 %)", 0.15, Align::Right),
     ];
     let row = |r: &ReadingHistory| {
         vec![
