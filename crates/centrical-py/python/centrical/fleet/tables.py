@@ -32,7 +32,10 @@ def rows_of(stores: Path) -> pa.Table:
     first: dict[str, int] = {}
     for index, key in enumerate(table["key"].to_pylist()):
         first.setdefault(key, index)
-    return table.take([first[key] for key in sorted(first)]).combine_chunks()
+    table = table.take([first[key] for key in sorted(first)]).combine_chunks()
+    # The checksums in the footers are of the columns of each part.
+    footer = {key: value for key, value in (table.schema.metadata or {}).items() if key != b"centrical_crc32"}
+    return table.replace_schema_metadata(footer)
 
 
 def sessions_of(rows: pa.Table, outcomes: list[Outcome], stores: Path) -> pa.Table:
