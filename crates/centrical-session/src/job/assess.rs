@@ -102,6 +102,7 @@ impl Assessment {
     }
 }
 
+/// The budget of the fit that is assessed, whether its residuals are those of a true model, and their patterns.
 fn checks(used: &Calibration, request: &AssessmentRequest) -> Result<(Budget, Validity, Vec<Pattern>), FitError> {
     let budget = used.budget()?;
     let budget = if request.scale_by_residuals { budget.scaled_by_residuals(used.fit()) } else { budget };

@@ -90,8 +90,7 @@ fn pair_of(
 /// Files of records or means with the same bytes in both.
 fn same_files(first: &CalibrationResult, second: &CalibrationResult) -> usize {
     let measured = |result: &CalibrationResult| -> HashSet<String> {
-        let is_measured = |path: &str| !path.to_ascii_lowercase().ends_with(".toml");
-        result.inputs.iter().filter(|input| is_measured(&input.path)).map(|input| input.sha256.clone()).collect()
+        result.inputs.iter().filter(|input| input.is_measured()).map(|input| input.sha256.clone()).collect()
     };
     measured(first).intersection(&measured(second)).count()
 }

@@ -26,6 +26,11 @@ impl Input {
     /// What it is expected to be.
     pub(crate) const EXPECTED: &str = "a file of the session";
 
+    /// Whether it holds what was measured: all but experiment files do.
+    pub(crate) fn is_measured(&self) -> bool {
+        !self.path.to_ascii_lowercase().ends_with(".toml")
+    }
+
     /// Path within the session's folder and hash of the bytes of a source, read in pieces. They do not count as `progress`.
     ///
     /// # Errors

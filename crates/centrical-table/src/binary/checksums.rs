@@ -26,7 +26,7 @@ impl Checksums {
         Self { names: hasher.finalize(), chunks: Vec::new() }
     }
 
-    /// Those that a footer keeps; `None` where they are not of a table with columns of these names, so many in all row groups.
+    /// Those that a footer keeps; `None` where the columns have other names, or another number over all row groups.
     pub fn kept<'n>(text: &str, names: impl Iterator<Item = &'n str>, chunks: usize) -> Option<Self> {
         let digits = text.as_bytes().chunks(8).map(|digits| std::str::from_utf8(digits).ok());
         let sums = digits.map(|digits| u32::from_str_radix(digits?, 16).ok()).collect::<Option<Vec<u32>>>()?;

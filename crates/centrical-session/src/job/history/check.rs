@@ -183,8 +183,7 @@ const COPY: &str = "the copy of a result";
 
 /// The hashes of files other than experiment files, whatever their names and order; `None` without any.
 fn measured(files: Vec<Input>) -> Option<String> {
-    let is_measured = |file: &Input| !file.path.to_ascii_lowercase().ends_with(".toml");
-    let mut hashes: Vec<String> = files.into_iter().filter(is_measured).map(|file| file.sha256).collect();
+    let mut hashes: Vec<String> = files.into_iter().filter(Input::is_measured).map(|file| file.sha256).collect();
     hashes.sort();
     (!hashes.is_empty()).then(|| sha256(hashes.concat().as_bytes()))
 }
