@@ -13,6 +13,7 @@ mod not_used;
 mod reading_error;
 mod symbol;
 mod typeset;
+mod unscheduled;
 
 pub(crate) use self::combination::{combination, printed_combination};
 pub use self::conformity::{Judged, UnitStatement, UnitVerdict};
@@ -23,6 +24,7 @@ pub(crate) use self::expanded::{COVERAGE_PROBABILITY, Expanded, expanded, expand
 pub(crate) use self::group::by_group;
 pub(crate) use self::interpolated::interpolated;
 pub(crate) use self::noise::Shown;
-pub(crate) use self::not_used::not_used;
+pub(crate) use self::not_used::{has_rounded_times, not_used};
 pub(crate) use self::reading_error::{ReadingError, compensated, reading_errors};
 pub(crate) use self::symbol::{newtonometer, symbol};
+pub use self::unscheduled::unscheduled;

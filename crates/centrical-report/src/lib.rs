@@ -21,7 +21,7 @@ pub use document::{
     Align, Attachment, Block, Column, Document, Layer, Margins, Opening, Row, Section, Table, TableKind, Tone,
     certificate, report,
 };
-pub use evaluation::{Judged, UnitStatement, UnitVerdict};
+pub use evaluation::{Judged, UnitStatement, UnitVerdict, unscheduled};
 pub use figure::{Figure, chart_plots, comparison_plot, figures, frontier_plot, positions_figure, unit_history_plots};
 pub use files::{
     DocumentRequest, Documents, PagesRequest, StorePages, read_issuer, write_all_documents, write_documents,

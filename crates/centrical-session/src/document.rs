@@ -63,7 +63,7 @@ pub use self::plan::{
 };
 pub use self::prediction::{PredictedParameter, PredictionReport};
 pub(crate) use self::record_findings::RecordFindings;
-pub use self::reduction::{ReducedPlateauSummary, ReductionReport};
+pub use self::reduction::{ReducedPlateauSummary, ReductionReport, UnscheduledPlateau};
 pub(crate) use self::result::Attitude;
 pub use self::result::{
     AxesName, AxesParameter, AxesSummary, BetweenRestsSummary, BudgetSource, BudgetSummary, CalibrationResult,
@@ -76,8 +76,8 @@ pub use self::result::{
 pub use self::series::{FailedSession, SeriesSummary};
 pub use self::simulation::SimulationReport;
 pub use self::steadiness::{
-    DriftSummary, LeftOutSummary, PlateauDriftVerdict, RepeatedPlateau, SessionDriftVerdict, SessionTrend, TiltSummary,
-    TiltVerdict,
+    DriftSummary, LeftOutSummary, PlateauDriftVerdict, RepeatedPlateau, SessionDriftVerdict, SessionTrend,
+    SettlingSummary, TiltSummary, TiltVerdict,
 };
 pub(crate) use self::truth::{Written, WrittenSession, WrittenTumble, truth_json};
 pub use self::watch::{

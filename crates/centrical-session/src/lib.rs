@@ -44,7 +44,7 @@ pub use document::{
     DocumentKind, DocumentsReport, Doubt, DoubtKind, DraftReport, FirstReading, HistoryLine, HistoryList,
     ImprovementSummary, LeftOutPlateau, LineToFillIn, ModelsReport, MonteCarloReport, NestedTestSummary, ObjectionName,
     PairComparison, ReadingsBeyond, ReducedPlateauSummary, ReductionReport, RepeatedFit, RepeatedParameter,
-    SeriesSummary, SimulationReport, SquareSummary, TermSupport, WithoutOutliers, WrittenDocument,
+    SeriesSummary, SimulationReport, SquareSummary, TermSupport, UnscheduledPlateau, WithoutOutliers, WrittenDocument,
 };
 pub use document::{
     AxesName, AxesParameter, AxesSummary, BetweenRestsSummary, BudgetSource, BudgetSummary, CalibrationResult,
@@ -55,9 +55,9 @@ pub use document::{
     OutlyingPlateau, OutputSummary, PairReport, ParameterEstimate, PatternSummary, PlanReport, PlannedMounting,
     PlannedPlateau, PlateauDriftVerdict, PlateauSummary, PositionSummary, PredictedParameter, PredictionReport,
     PriorSummary, Program, ReadingNoise, ReasonReport, RemedyReport, RepeatedPlateau, RestsOn, ResultObjection,
-    RivalSize, RivalSummary, SCHEMA, SessionDriftVerdict, SessionSummary, SessionTrend, SightReport, SpeedDifference,
-    SpeedFinding, SpeedsSummary, StabilityCurve, StepReport, Subject, TermSummary, TiltSummary, TiltVerdict,
-    ValiditySummary, WatchState, WatchedPlateau, read_history, unit_name,
+    RivalSize, RivalSummary, SCHEMA, SessionDriftVerdict, SessionSummary, SessionTrend, SettlingSummary, SightReport,
+    SpeedDifference, SpeedFinding, SpeedsSummary, StabilityCurve, StepReport, Subject, TermSummary, TiltSummary,
+    TiltVerdict, ValiditySummary, WatchState, WatchedPlateau, read_history, unit_name,
 };
 pub use document::{
     BatchSummary, BatchWithoutUnit, BeyondLimit, CapabilitySummary, ChartReport, ChartSignal, DeviatingSession,

@@ -28,7 +28,7 @@ pub struct Reduced {
 }
 
 /// What a mounting's record tells beside its means.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct MountingFindings {
     /// Time constant of the settling after a ramp [s]; none if no settling was seen.
     pub settling_time: Option<f64>,
@@ -39,6 +39,8 @@ pub struct MountingFindings {
     /// Readings of newtonometers 1, 2, 3 that were interpolated to the stamps of another one; none unless each has a file with stamps
     /// of its own.
     pub interpolated: Option<[u64; 3]>,
+    /// Plateaus that the record shows and the schedule does not have, from and to, the record's clock [s].
+    pub unscheduled: Vec<[f64; 2]>,
 }
 
 /// The mean reading of a plateau and what it was made of.

@@ -102,7 +102,8 @@ impl TextReader {
             let mut skip = 0;
             if is_first {
                 read(0, &mut pieces[0])?;
-                let start = match lines::endless_line(&pieces[0].text) {
+                let start = match lines::ends_of_lines(&pieces[0].text).or_else(|| lines::endless_line(&pieces[0].text))
+                {
                     Some((at, found)) => Err((at, Fault::no_table(found))),
                     None => prologue.read(&pieces[0].text, *line - 1, fields),
                 };

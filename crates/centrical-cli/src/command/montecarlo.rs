@@ -18,7 +18,7 @@ pub struct Arguments {
     /// The session folder, or its experiment.toml; one without records and plateau table is a plan
     session: PathBuf,
     /// Number of calibrations
-    #[arg(long, default_value_t = 10_000)]
+    #[arg(long, default_value_t = 10_000, value_parser = runs)]
     runs: usize,
     /// Seed of the random numbers: the same seed gives the same numbers for any number of threads
     #[arg(long, default_value_t = 1)]
@@ -38,6 +38,11 @@ pub struct Arguments {
     typical: bool,
     #[command(flatten)]
     printing: Printing,
+}
+
+fn runs(text: &str) -> Result<usize, String> {
+    let runs = text.parse().map_err(|_| format!("found {text:?}, expected a number of calibrations"))?;
+    MonteCarloRequest::runs(runs)
 }
 
 /// Runs the command.

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use centrical_report::{Screen, counted};
+use centrical_report::{Language, Screen, counted, unscheduled};
 use centrical_session::{Error, ReductionReport, Session, reduce_without_inputs, write_reduced};
 
 use crate::format::Format;
@@ -42,6 +42,10 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
             let named = ["f1", "f2", "f3"].iter().zip(interpolated).filter(|(_, count)| *count > 0);
             let named: Vec<String> = named.map(|(name, count)| format!("{name} {count}")).collect();
             screen.say(0, &format!("readings interpolated to common stamps: {}", named.join(", ")));
+        }
+        if let Some(named) = unscheduled(reduced.mountings.iter().map(|m| m.unscheduled.as_slice()), Language::English)
+        {
+            screen.say(0, &format!("plateaus that the schedule does not have, not used: {named}"));
         }
         screen
     };

@@ -34,6 +34,7 @@ mod speeds;
 mod steadiness;
 mod trust;
 mod tumble;
+mod tumble_made;
 mod tumble_mistakes;
 mod watch;
 mod watched_rests;

@@ -1,6 +1,7 @@
 //! Bad input: exit code 2, one message that names the file, the place, what was found and what was expected,
 //! no panic, nothing left behind.
 
+use std::f64::consts::TAU;
 use std::fs;
 
 use crate::session::Copy;
@@ -165,6 +166,19 @@ fn experiment() {
 }
 
 #[test]
+fn lines_that_end_with_cr_alone() {
+    let copy = Copy::new();
+    copy.edit("records/m07.csv", |text| text.replace('\n', "\r"));
+    refused(&copy, &["m07.csv, line 1", "found lines that end with CR alone"]);
+}
+
+#[test]
+fn an_uncertainty_of_gravity_beyond_the_earth() {
+    let uncertain = "[uncertainty]\ngravity = \"10 m/s^2\"\n[model]";
+    toml("[model]", uncertain, &["[uncertainty]", "gravity: found \"10 m/s^2\", expected a standard uncertainty"]);
+}
+
+#[test]
 fn positions_and_schedules() {
     let copy = Copy::new();
     copy.edit("experiment.toml", |text| {
@@ -196,6 +210,31 @@ fn a_mean_beyond_all_measure() {
     assert!(message.contains("plateaus.csv: found 99999 m/s^2 as mean_1 of plateau 2:2, where "), "{message}");
 }
 
+/// Speeds of a table in another unit: the means say which.
+#[test]
+fn speeds_of_a_table_in_another_unit() {
+    let copy = Copy::new();
+    assert_eq!(copy.run(&["reduce", "../session", "--out", "reduced"]).status.code(), Some(0));
+    let file = copy.out().join("reduced/plateaus.csv");
+    let table = fs::read_to_string(&file).unwrap();
+    for (unit, factor) in [("rpm", 60.0 / TAU), ("rev/s", 1.0 / TAU), ("deg/s", 360.0 / TAU)] {
+        let row = |line: &str| {
+            let mut cells: Vec<String> = line.split(',').map(str::to_owned).collect();
+            cells[1] = cells[1].parse::<f64>().map_or(cells[1].clone(), |speed| (factor * speed).to_string());
+            cells.join(",") + "\n"
+        };
+        fs::write(&file, table.lines().map(row).collect::<String>()).unwrap();
+        let run = copy.run(&["calibrate", "reduced", "--out", "out"]);
+        let message = String::from_utf8(run.stderr).unwrap();
+        assert_eq!(run.status.code(), Some(2), "{unit}: {message}");
+        assert!(
+            message.contains("plateaus.csv: found a speed of ") && message.contains("expected speeds in rad/s"),
+            "{message}"
+        );
+        assert!(message.contains(&format!(" fits a speed in {unit}, ")), "{unit}: {message}");
+    }
+}
+
 /// Numbers of options that stand for nothing.
 #[test]
 fn numbers_of_options() {
@@ -210,6 +249,11 @@ fn numbers_of_options() {
         refused(&["compare", "a.json", "b.json", "--years", number], "--years");
         refused(&["montecarlo", "../session", "--noise", number], "--noise");
     }
+    for runs in ["0", "10000001", "1e3"] {
+        refused(&["montecarlo", "../session", "--runs", runs], "--runs");
+    }
+    let twice = ["watch", "../session", "--once", "--out", "w", "--target", "bias=1", "--target", "bias=2"];
+    refused(&twice, "found two targets for \"bias\", expected one for each group");
     refused(&["noise", "../session/records/m01.csv", "--rate", "1e-300"], "--rate");
     // A second's samples are few, and no reason to stop.
     let slow = copy.run(&["noise", "../session/records/m01.csv", "--rate", "1"]);
@@ -233,7 +277,11 @@ fn usage() {
 /// Means of plateaus in another unit, or with the sign of an axis reversed, have no samples to ask: their scale says so.
 #[test]
 fn means_in_another_unit_or_sign_are_refused() {
-    for (factor, name) in [(1.0 / 9.80665, "in g"), (-1.0, "reversed"), (0.5, "halved")] {
+    for (factor, name, as_if) in [
+        (1.0 / 9.80665, "in g", "), as if in g, expected 0.7 to 1.3"),
+        (-1.0, "reversed", "), as if its sign were reversed, expected"),
+        (0.5, "halved", "), expected"),
+    ] {
         let copy = Copy::new();
         let session = copy.session();
         assert!(copy.run(&["reduce", session.to_str().unwrap(), "--out", "reduced"]).status.success());
@@ -250,7 +298,7 @@ fn means_in_another_unit_or_sign_are_refused() {
         let run = copy.run(&["calibrate", "reduced", "--out", "out"]);
         let message = String::from_utf8(run.stderr).unwrap();
         assert_eq!(run.status.code(), Some(2), "{name}: {message}");
-        assert!(message.contains("times the specific force (G0_22 = "), "{name}: {message}");
+        assert!(message.contains("times the specific force (G0_22 = ") && message.contains(as_if), "{name}: {message}");
         assert!(!copy.out().join("out/result.json").exists());
     }
 }

@@ -3,6 +3,7 @@
 use std::fs;
 
 use centrical_session::CalibrationResult;
+use serde_json::Value;
 
 use crate::session::{Copy, example};
 
@@ -102,4 +103,63 @@ fn a_drifting_session_is_said_to_drift() {
         let tolerance = 4.0 * uncertainty + 4.0 * 3e-3;
         assert!((drift.repeats[0].difference[axis] - foretold).abs() < tolerance, "{foretold} {:?}", drift.repeats[0]);
     }
+}
+
+/// Times in ms taken for s: the means are right, and nothing in the readings turns with the arm.
+#[test]
+fn times_in_another_unit_show_no_revolution() {
+    let copy = Copy::new();
+    copy.edit("experiment.toml", |text| {
+        let lines = text.lines().filter(|line| !line.starts_with("telemetry"));
+        lines.collect::<Vec<_>>().join("\n")
+    });
+    for mounting in 1..=12 {
+        let scaled = |line: &str| match line.split_once(',').map(|(t, rest)| (t.parse::<f64>(), rest)) {
+            Some((Ok(t), rest)) => format!("{},{rest}\n", 1000.0 * t),
+            _ => format!("{line}\n"),
+        };
+        copy.edit(&format!("records/m{mounting:02}.csv"), |text| text.lines().map(scaled).collect());
+    }
+    let said = String::from_utf8(copy.calibrate(&[]).stdout).unwrap();
+    let said: Vec<&str> = said.split_whitespace().collect();
+    assert!(
+        said.join(" ").contains("no term turns with the arm: the times of the records are in another unit"),
+        "{said:?}"
+    );
+}
+
+/// A plateau that the record shows and the schedule lacks is left out, and named.
+#[test]
+fn a_plateau_that_the_schedule_lacks_is_named() {
+    let copy = Copy::new();
+    let all = |copy: &Copy| CalibrationResult::read(&copy.out().join("result.json")).unwrap().mountings;
+    assert!(copy.calibrate(&[]).status.success());
+    assert!(all(&copy).iter().all(|mounting| mounting.unscheduled.is_empty()));
+    copy.edit("experiment.toml", |text| text.replacen("  { speed = \"463.5 rpm\" },\n", "", 1));
+    let said = String::from_utf8(copy.calibrate(&[]).stdout).unwrap();
+    let said = said.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(said.contains("plateaus that the schedule does not have, not used: mounting 1, "), "{said}");
+    let mountings = all(&copy);
+    assert_eq!(mountings[0].unscheduled.len(), 1, "{:?}", mountings[0]);
+    assert!(mountings[1..].iter().all(|mounting| mounting.unscheduled.is_empty()));
+    let reduced = copy.run(&["reduce", "../session", "--out", "reduced", "--json"]);
+    let reduced: Value = serde_json::from_slice(&reduced.stdout).unwrap();
+    assert_eq!(reduced["unscheduled"][0]["mounting"], 1);
+    assert_eq!(reduced["unscheduled"][0]["window"], serde_json::json!(mountings[0].unscheduled[0]));
+}
+
+/// Times with one digit behind the point leave a tenth of 100 samples a second, and the program says why.
+#[test]
+fn rounded_times_are_named() {
+    let copy = Copy::new();
+    for mounting in 1..=12 {
+        let rounded = |line: &str| match line.split_once(',').map(|(t, rest)| (t.parse::<f64>(), rest)) {
+            Some((Ok(t), rest)) => format!("{t:.1},{rest}\n"),
+            _ => format!("{line}\n"),
+        };
+        copy.edit(&format!("records/m{mounting:02}.csv"), |text| text.lines().map(rounded).collect());
+    }
+    let said = String::from_utf8(copy.calibrate(&[]).stdout).unwrap();
+    let said = said.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(said.contains("more samples share a time than are used: the times are rounded"), "{said}");
 }

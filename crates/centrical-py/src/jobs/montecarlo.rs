@@ -5,7 +5,7 @@ use pyo3::prelude::*;
 
 use crate::given::GivenSession;
 use crate::progress::{self, Shown};
-use crate::words::probability;
+use crate::words::{probability, refused};
 
 /// `centrical-montecarlo/1`.
 #[pyfunction]
@@ -20,6 +20,7 @@ pub fn montecarlo(
     typical: bool,
     shown: Shown,
 ) -> PyResult<String> {
+    let runs = MonteCarloRequest::runs(runs).map_err(|wrong| refused("runs", wrong))?;
     let request = MonteCarloRequest { runs, seed, coverage: probability("coverage", coverage)?, linear };
     progress::run(py, &shown, |work| {
         let plan = match &subject {

@@ -6,7 +6,7 @@ use centrical_session::{
 };
 
 use super::content::Block;
-use crate::evaluation::{interpolated, newtonometer, not_used};
+use crate::evaluation::{has_rounded_times, interpolated, newtonometer, not_used, unscheduled};
 use crate::language::{Language, Messages};
 use crate::number::MINUTE;
 
@@ -101,6 +101,7 @@ fn tilts(facts: &mut Vec<Fact>, tilt: &TiltSummary, language: Language) {
         match tilt.verdict() {
             TiltVerdict::Agree => messages.tilts_agree.to_owned(),
             TiltVerdict::Differ => messages.tilts_differ.to_owned(),
+            TiltVerdict::Absent => messages.tilt_absent.to_owned(),
             TiltVerdict::Reversed => {
                 format!("{} ({})", messages.tilt_reversed, shown(tilt.reversed, tilt.spinning_uncertainty))
             }
@@ -123,12 +124,16 @@ fn left_out(facts: &mut Vec<Fact>, result: &CalibrationResult, language: Languag
         (messages.repeated, repeated),
     ];
     let named = kinds.iter().filter(|(_, count)| *count > 0).map(|(kind, count)| format!("{kind}: {count}"));
-    let named = named.collect::<Vec<_>>().join("; ");
+    let rounded = has_rounded_times(result).then(|| messages.rounded_times.to_owned());
+    let named = named.chain(rounded).collect::<Vec<_>>().join("; ");
     facts.push((messages.not_used, if named.is_empty() { messages.none.to_owned() } else { named }));
     let named: Vec<String> =
         interpolated(result).into_iter().map(|(number, count)| axis(number, &count.to_string())).collect();
     if !named.is_empty() {
         facts.push((messages.interpolated, named.join("; ")));
+    }
+    if let Some(named) = unscheduled(result.mountings.iter().map(|m| m.unscheduled.as_slice()), language) {
+        facts.push((messages.unscheduled, named));
     }
 }
 

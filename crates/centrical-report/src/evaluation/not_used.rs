@@ -12,3 +12,8 @@ pub(crate) fn not_used(result: &CalibrationResult) -> LeftOutSummary {
         repeated: sum.repeated + of.repeated,
     })
 }
+
+/// Whether more samples were left out for a time that the one before had than were used: the times are rounded.
+pub(crate) fn has_rounded_times(result: &CalibrationResult) -> bool {
+    not_used(result).repeated as u64 > result.plateaus.iter().map(|plateau| plateau.samples).sum()
+}

@@ -179,6 +179,7 @@ pub(super) fn rival(rival: Rival) -> &'static str {
             Extension::Disturbance(Course::TimeScale) => "scale that changes over the session",
             Extension::Disturbance(Course::Rise) => "difference after a rise and after a fall of the speed",
             Extension::Disturbance(Course::Memory) => "memory of earlier forces",
+            Extension::Disturbance(Course::Turn) => "hysteresis: a bias by the sense of the last change of the force",
             Extension::OneSpeed(_) => "one set speed that is off",
             Extension::OneMounting(Difference::Shift, _) => "shift of the unit in one mounting",
             Extension::OneMounting(Difference::Turn, _) => "turn of the unit in one mounting",

@@ -175,6 +175,7 @@ pub(super) fn rival(rival: Rival) -> &'static str {
             Extension::Disturbance(Course::TimeScale) => "изменение масштаба за время эксперимента",
             Extension::Disturbance(Course::Rise) => "различие после роста и после спада скорости",
             Extension::Disturbance(Course::Memory) => "память о прежних силах",
+            Extension::Disturbance(Course::Turn) => "гистерезис: нуль по знаку последнего изменения силы",
             Extension::OneSpeed(_) => "ошибка одной заданной скорости",
             Extension::OneMounting(Difference::Shift, _) => "смещение прибора в одной установке",
             Extension::OneMounting(Difference::Turn, _) => "поворот прибора в одной установке",

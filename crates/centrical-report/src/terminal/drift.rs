@@ -1,12 +1,13 @@
 //! How steady the readings were, as text for the terminal.
 
 use centrical_session::{
-    CalibrationResult, DriftSummary, LeftOutSummary, MICRO_G, PlateauDriftVerdict, SessionDriftVerdict, TiltSummary,
-    TiltVerdict,
+    CalibrationResult, DriftSummary, LeftOutSummary, MICRO_G, PlateauDriftVerdict, SessionDriftVerdict,
+    SettlingSummary, TiltSummary, TiltVerdict,
 };
 
 use super::screen::Screen;
-use crate::evaluation::{interpolated, not_used};
+use crate::evaluation::{has_rounded_times, interpolated, not_used, unscheduled};
+use crate::language::Language;
 use crate::number::{MINUTE, counted, with_uncertainty};
 
 /// The section of the terminal's table; empty for a session that came already averaged.
@@ -14,6 +15,7 @@ pub(super) fn drift(screen: &mut Screen, result: &CalibrationResult) {
     left_out(screen, result);
     if let Some(drift) = &result.drift {
         over_plateaus(screen, drift);
+        settling(screen, drift);
         over_session(screen, drift);
         repeats(screen, drift);
     }
@@ -31,9 +33,16 @@ fn left_out(screen: &mut Screen, result: &CalibrationResult) {
     if !named.is_empty() {
         screen.fact("", &format!("samples not used: {}", named.join(", ")));
     }
+    if has_rounded_times(result) {
+        screen
+            .fact("", "more samples share a time than are used: the times are rounded; time = { rate = ... } uses all");
+    }
     let named: Vec<String> = interpolated(result).iter().map(|(axis, count)| format!("f{axis} {count}")).collect();
     if !named.is_empty() {
         screen.fact("", &format!("readings interpolated to common stamps: {}", named.join(", ")));
+    }
+    if let Some(named) = unscheduled(result.mountings.iter().map(|m| m.unscheduled.as_slice()), Language::English) {
+        screen.fact("", &format!("plateaus that the schedule does not have, not used: {named}"));
     }
 }
 
@@ -54,6 +63,19 @@ fn over_plateaus(screen: &mut Screen, drift: &DriftSummary) {
             shown.join(", "),
             drift.chi_squared,
             drift.degrees_of_freedom
+        ),
+    );
+}
+
+/// Where slopes of rests follow the change of the reading before.
+fn settling(screen: &mut Screen, drift: &DriftSummary) {
+    let Some(settling) = drift.settling.filter(SettlingSummary::is_real) else { return };
+    let (rate, u) = with_uncertainty(1e6 * settling.rate, 1e6 * settling.standard_uncertainty);
+    screen.fact(
+        "",
+        &format!(
+            "after a turn readings go on by {rate} ± {u} ppm of its change a second, chance {}",
+            Language::English.probability(settling.probability)
         ),
     );
 }
@@ -101,6 +123,10 @@ fn tilts(screen: &mut Screen, tilt: &TiltSummary) {
         TiltVerdict::Agree => "they agree".to_owned(),
         TiltVerdict::Differ => {
             "they differ: the axis is not the same while it spins, or something else turns with it".to_owned()
+        }
+        TiltVerdict::Absent => {
+            "no term turns with the arm: the times of the records are in another unit, or the recorder averages over a revolution"
+                .to_owned()
         }
         TiltVerdict::Reversed => {
             let as_if = shown(tilt.reversed, tilt.spinning_uncertainty);

@@ -26,6 +26,9 @@ pub(super) fn rests(screen: &mut Screen, result: &CalibrationResult) {
     } else {
         screen.say(2, &found);
     }
+    if let Some(least) = least_rest(&rests) {
+        screen.say(2, &format!("at this sampling rate a rest below {least:.1} s may be taken for motion"));
+    }
     if !known.is_empty() {
         let (low, high) = known.iter().fold((f64::INFINITY, 0.0_f64), |(low, high), u| (low.min(*u), high.max(*u)));
         let degrees = |u: f64| format!("{:.2} deg", u.to_degrees());
@@ -93,4 +96,12 @@ fn misfit(rest: &PlateauSummary) -> Option<f64> {
     let force = rest.specific_force?;
     let size = force.iter().map(|f| f * f).sum::<f64>().sqrt();
     Some(force.iter().zip(rest.residual).map(|(f, residual)| f / size * residual).sum())
+}
+
+/// Rests that are sure to be found have four blocks of eight samples [s]; `None` where that is below the second that a rest has at least.
+fn least_rest(rests: &[&PlateauSummary]) -> Option<f64> {
+    const SAMPLES: f64 = 32.0;
+    let spans = rests.iter().filter_map(|rest| Some((rest.window?, rest.samples.saturating_sub(1))));
+    let (time, steps) = spans.fold((0.0, 0), |(time, all), ([from, to], steps)| (time + to - from, all + steps));
+    Some(SAMPLES * time / steps as f64).filter(|least| *least > 1.0 && steps > 0)
 }

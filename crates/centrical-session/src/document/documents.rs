@@ -69,6 +69,8 @@ pub enum ObjectionName {
     Speeds,
     /// Readings drift over plateaus.
     Drift,
+    /// Readings settle after the unit is turned.
+    Settling,
     /// Coefficients of the error model are not determined.
     NotDetermined,
 }
@@ -84,6 +86,7 @@ impl ObjectionName {
             Self::Patterns => "patterns",
             Self::Speeds => "speeds",
             Self::Drift => "drift",
+            Self::Settling => "settling",
             Self::NotDetermined => "not-determined",
         }
     }
@@ -99,6 +102,7 @@ impl From<&ResultObjection> for ObjectionName {
             ResultObjection::Patterns(..) => Self::Patterns,
             ResultObjection::Speeds(..) => Self::Speeds,
             ResultObjection::Drift { .. } => Self::Drift,
+            ResultObjection::Settling(..) => Self::Settling,
             ResultObjection::NotDetermined(..) => Self::NotDetermined,
         }
     }

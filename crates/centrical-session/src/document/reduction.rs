@@ -9,7 +9,7 @@ use super::result::Program;
 use super::steadiness::LeftOutSummary;
 use crate::error::Error;
 use crate::experiment::Session;
-use crate::reduced::Reduced;
+use crate::reduced::{MountingFindings, Reduced};
 
 /// Name of the schema's present version.
 pub const REDUCTION_SCHEMA: &str = "centrical-reduction/1";
@@ -29,8 +29,20 @@ pub struct ReductionReport {
     /// of its own.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub interpolated: Option<[u64; 3]>,
+    /// Plateaus that a record shows and the schedule does not have.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub unscheduled: Vec<UnscheduledPlateau>,
     /// The plateaus, in the order of the schedule.
     pub plateaus: Vec<ReducedPlateauSummary>,
+}
+
+/// A plateau that a record shows and the schedule does not have.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct UnscheduledPlateau {
+    /// Mounting, counted from 1.
+    pub mounting: usize,
+    /// From and to, the record's clock [s].
+    pub window: [f64; 2],
 }
 
 /// A plateau mean.
@@ -79,12 +91,16 @@ impl ReductionReport {
                 covariance: plateau.covariance.transpose().into(),
             });
         }
+        let unscheduled = |(mounting, findings): (usize, &MountingFindings)| -> Vec<UnscheduledPlateau> {
+            findings.unscheduled.iter().map(|window| UnscheduledPlateau { mounting, window: *window }).collect()
+        };
         Self {
             schema: REDUCTION_SCHEMA,
             program: Program::this(),
             title: session.title.clone(),
             folder: folder.display().to_string(),
             interpolated: reduced.interpolated(),
+            unscheduled: (1..).zip(&reduced.mountings).flat_map(unscheduled).collect(),
             plateaus: rows,
         }
     }

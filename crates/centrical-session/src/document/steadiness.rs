@@ -2,10 +2,10 @@
 
 use centrical::reduction::LeftOut;
 use centrical::uncertainty::{
-    Level, OncePerRevolution, PlateauDrift, Repeat, SessionDrift, Slope, TiltComparison, chi_squared_tail, repeats,
-    slope_of_speed,
+    Level, OncePerRevolution, PlateauDrift, Repeat, SessionDrift, Settling, Slope, TiltComparison, chi_squared_tail,
+    repeats, slope_of_speed,
 };
-use centrical::{Calibration, FitError, Observation, SetPoint};
+use centrical::{Calibration, Experiment, FitError, Observation, SetPoint};
 use serde::{Deserialize, Serialize};
 
 use crate::reduced::{Reduced, ReducedPlateau, Steadiness};
@@ -46,11 +46,32 @@ pub struct DriftSummary {
     /// wrote none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub beyond_speed: Option<f64>,
+    /// Slopes of rests as they follow the change of the reading before them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub settling: Option<SettlingSummary>,
     /// Trend of the residuals with the order of the plateaus; empty where the unknowns follow it.
     pub over_session: Vec<SessionTrend>,
     /// Plateaus of one mounting that were run again.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub repeats: Vec<RepeatedPlateau>,
+}
+
+/// Readings that settle after the unit was turned.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct SettlingSummary {
+    /// Slope over a rest per change of the reading before it [1/s].
+    pub rate: f64,
+    /// Its standard uncertainty [1/s].
+    pub standard_uncertainty: f64,
+    /// Probability of so large a rate by chance.
+    pub probability: f64,
+}
+
+impl SettlingSummary {
+    /// Whether chance is ruled out.
+    pub fn is_real(&self) -> bool {
+        Level::Real.is_passed_by(self.probability)
+    }
 }
 
 /// A trend over the session.
@@ -115,6 +136,8 @@ pub enum TiltVerdict {
     Differ,
     /// The one seen while spinning would agree better if the arm turned the other way.
     Reversed,
+    /// They differ, and while spinning none is seen.
+    Absent,
 }
 
 /// What the slopes say of a drift over the plateaus.
@@ -163,9 +186,15 @@ impl TiltSummary {
     pub fn verdict(&self) -> TiltVerdict {
         match Level::Real.is_passed_by(self.probability) {
             false => TiltVerdict::Agree,
+            true if self.is_absent(self.spinning) && self.is_absent(self.reversed) => TiltVerdict::Absent,
             true if self.reversed > self.spinning => TiltVerdict::Reversed,
             true => TiltVerdict::Differ,
         }
+    }
+
+    /// Whether a tilt while spinning is within its expanded uncertainty.
+    fn is_absent(&self, tilt: f64) -> bool {
+        tilt < 2.0 * self.spinning_uncertainty
     }
 
     /// Whether the plateaus' own tilts scatter.
@@ -247,6 +276,7 @@ impl DriftSummary {
             degrees_of_freedom: drift.degrees_of_freedom,
             probability: drift.probability,
             beyond_speed: Some(beyond_speed.chi_squared),
+            settling: settling(experiment, reduced, &slopes),
             over_session: trends.into_iter().map(SessionTrend::from).collect(),
             repeats: repeated(calibration, reduced),
         }))
@@ -257,6 +287,20 @@ impl From<SessionDrift> for SessionTrend {
     fn from(SessionDrift { axis, change, standard_uncertainty, probability }: SessionDrift) -> Self {
         Self { axis: axis + 1, change, standard_uncertainty, probability }
     }
+}
+
+/// How the rests apart from the arm settle, each after the one before in its record.
+fn settling(experiment: &Experiment, reduced: &Reduced, slopes: &[Slope]) -> Option<SettlingSummary> {
+    let is_rest =
+        |n: usize| !experiment.is_on_arm(experiment.set_points[n].mounting) && reduced.plateaus[n].arc.is_none();
+    let after = |n: usize| {
+        let [before, plateau] = [n - 1, n].map(|n| &reduced.plateaus[n]);
+        let follows = is_rest(n - 1) && is_rest(n) && before.window?[1] < plateau.window?[0];
+        follows.then(|| (slopes[n], plateau.mean, plateau.mean - before.mean))
+    };
+    let rests: Vec<_> = (1..slopes.len()).filter_map(after).collect();
+    let Settling { rate, standard_uncertainty, probability } = Settling::of(&rests)?;
+    Some(SettlingSummary { rate, standard_uncertainty, probability })
 }
 
 /// The slopes of all plateaus, less what their speeds explain.

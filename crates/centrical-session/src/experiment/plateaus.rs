@@ -12,6 +12,7 @@
 //! | `bend_1` .. `bend_3` | second derivative of the vertical in instrument axes [1/s^2], in a table of rests with arcs of slow rotation |
 
 use std::collections::HashMap;
+use std::f64::consts::TAU;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
@@ -94,6 +95,7 @@ impl PlateauTable {
     /// name `file`.
     pub(crate) fn check_means(&self, file: &Path, experiment: &Experiment) -> Result<(), Error> {
         let nominal: Vec<_> = experiment.set_points.iter().map(|s| linear::nominal(experiment, s)).collect();
+        self.refuse_speeds(file, &nominal)?;
         let most = BEYOND * nominal.iter().map(Vector3::amax).fold(STANDARD_GRAVITY, f64::max);
         for (n, (row, nominal)) in self.rows.iter().zip(&nominal).enumerate() {
             let far = (0..3).find(|&axis| (row.mean[axis] - nominal[axis]).abs() > most);
@@ -111,6 +113,25 @@ impl PlateauTable {
             }
         }
         Ok(())
+    }
+
+    /// Refuses speeds in another unit: the largest nominal reading, which goes as their square, is that of another unit's factor.
+    fn refuse_speeds(&self, file: &Path, nominal: &[Vector3<f64>]) -> Result<(), Error> {
+        let both = self.rows.iter().zip(nominal);
+        let Some((row, nominal)) = both.max_by(|(_, a), (_, b)| a.amax().total_cmp(&b.amax())) else { return Ok(()) };
+        let share = row.mean.dot(nominal) / nominal.norm_squared();
+        let is_near = |factor: f64| (share / (factor * factor) - 1.0).abs() < LARGEST_SCALE;
+        let Some((unit, _)) = OTHER_SPEEDS.iter().find(|(_, factor)| row.speed != 0.0 && is_near(*factor)) else {
+            return Ok(());
+        };
+        let found = format!(
+            "a speed of {} in mounting {}, whose mean of {:.6} m/s^2 fits a speed in {unit}",
+            row.speed,
+            row.mounting + 1,
+            row.mean[nominal.iamax()]
+        );
+        let file = self.file.as_deref().unwrap_or(file);
+        Err(Error::content(file, Place::Whole, found, "speeds in rad/s"))
     }
 
     pub(crate) fn set_points(&self, rotation: Rotation) -> Vec<SetPoint> {
@@ -174,6 +195,12 @@ impl Further {
 
 /// A mean reading is wrong if it is off by this factor of the largest nominal one.
 const BEYOND: f64 = 10.0;
+
+/// Units in which a speed may stand in place of rad/s, each in rad/s.
+const OTHER_SPEEDS: [(&str, f64); 3] = [("rpm", TAU / 60.0), ("rev/s", TAU), ("deg/s", TAU / 360.0)];
+
+/// Largest error of a scale that a unit may have.
+const LARGEST_SCALE: f64 = 0.3;
 
 /// Place of `mean_1` among the columns.
 const MEAN: usize = 3;

@@ -6,11 +6,13 @@
 //! |---|---|
 //! | `up_1` .. `up_3` | the direction of the vertical, of any length; zero where it is unknown |
 
+use std::cmp::Reverse;
 use std::f64::consts::PI;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use centrical::observability::cube_directions;
+use centrical::reduction::Mistake;
 use centrical_table::{ColumnName, Extent, Field, Rule, Source, TableLines, TableReader, write_whole};
 use nalgebra::Vector3;
 
@@ -55,11 +57,12 @@ impl StatedAttitudes {
             return Err(Error::content(file, Place::Whole, found, "a standard uncertainty of 1e-12 rad to 10 deg"));
         }
         let within = NEAR.min(0.5 * self.smallest_angle());
-        let nearest = |mean: &Vector3<f64>| {
-            let near = self.up_b.iter().min_by(|a, b| a.angle(mean).total_cmp(&b.angle(mean)))?;
-            (near.angle(mean) < within).then_some(*near)
-        };
-        let attitudes: Vec<_> = means.iter().map(nearest).collect();
+        let attitudes: Vec<_> = means.iter().map(|mean| nearest(&self.up_b, mean, within)).collect();
+        if let Some(found) = self.by_other_columns(means, within) {
+            let expected =
+                "columns in the order and with the signs of the axes of the case, or attitudes in which the unit rests";
+            return Err(Error::content(file, Place::Whole, found, expected));
+        }
         if attitudes.iter().all(Option::is_none) {
             let found = format!(
                 "{} attitudes, none of them within {:.0} deg of any of the {} rests",
@@ -73,11 +76,43 @@ impl StatedAttitudes {
         Ok(attitudes)
     }
 
+    /// How other signs or another order of the columns explain the rests decisively better: `k` more of them are in an attitude, with the odds
+    /// `(9 / q)^k` where by chance a share `q` is, and a tenth of all rests beside the attitudes.
+    fn by_other_columns(&self, means: &[Vector3<f64>], within: f64) -> Option<String> {
+        /// Odds of such a mistake against none.
+        const ODDS: f64 = 1e-6;
+        /// So many rests show a mistake as well as all.
+        const LOOKED_AT: usize = 200;
+        let means = &means[..means.len().min(LOOKED_AT)];
+        let in_attitude = |up: &[Vector3<f64>]| means.iter().filter(|mean| nearest(up, mean, within).is_some()).count();
+        let by_mistake = |mistake: Mistake| {
+            let up: Vec<_> = self.up_b.iter().map(|up| mistake.reading(up)).collect();
+            (mistake, in_attitude(&up))
+        };
+        let as_they_are = in_attitude(&self.up_b);
+        if 2 * as_they_are > means.len() {
+            return None;
+        }
+        let (mistake, count) = Mistake::of_columns().map(by_mistake).min_by_key(|(_, count)| Reverse(*count))?;
+        let by_chance = self.up_b.len() as f64 * 0.5 * (1.0 - within.cos());
+        let odds = (9.0 / by_chance).powf(count as f64 - as_they_are as f64) * ODDS;
+        let rests = means.len();
+        (odds > 1.0).then(|| {
+            format!("{as_they_are} of {rests} rests in one of these attitudes, and {count} of {rests} with {mistake}")
+        })
+    }
+
     /// Smallest angle between two attitudes that are not the same one [rad].
     fn smallest_angle(&self) -> f64 {
         let pairs = self.up_b.iter().enumerate().flat_map(|(n, a)| self.up_b[..n].iter().map(|b| a.angle(b)));
         pairs.filter(|angle| *angle > SAME).fold(PI, f64::min)
     }
+}
+
+/// The attitude of `up` nearest to a mean, if it is within that angle [rad].
+fn nearest(up: &[Vector3<f64>], mean: &Vector3<f64>, within: f64) -> Option<Vector3<f64>> {
+    let near = up.iter().min_by(|a, b| a.angle(mean).total_cmp(&b.angle(mean)))?;
+    (near.angle(mean) < within).then_some(*near)
 }
 
 /// No table shows attitudes better than this [rad]; far below it the fit loses its digits.

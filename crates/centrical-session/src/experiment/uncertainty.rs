@@ -48,7 +48,7 @@ pub(crate) fn type_b(
         let meaning = "a standard uncertainty, zero or more and not beyond reason";
         table.get(key).map(|q| at.bounded(key, q, dimension, (0.0, largest), meaning)).transpose()
     };
-    // Beyond these a unit was mistaken: 1 m, 1 rad, 10 m/s^2, 100 %.
+    // Beyond these a unit was mistaken: 1 m, 1 rad, 10 m/s^2, 100 %; for gravity twice its range over the Earth.
     let length = |key| read(key, Dimension::Length, 1.0);
     let angle = |key| read(key, Dimension::Angle, 1.0);
     let acceleration = |key| read(key, Dimension::Acceleration, 10.0);
@@ -72,7 +72,7 @@ pub(crate) fn type_b(
         return Err(at.unexpected("speed_scale", stated.to_string(), expected));
     }
     Ok(TypeB {
-        gravity: acceleration("gravity")?.unwrap_or(0.0),
+        gravity: read("gravity", Dimension::Acceleration, 0.1)?.unwrap_or(0.0),
         latitude: angle("latitude")?.unwrap_or(0.0),
         radius,
         radius_difference,

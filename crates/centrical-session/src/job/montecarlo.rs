@@ -25,6 +25,17 @@ pub struct MonteCarloRequest {
     pub linear: bool,
 }
 
+impl MonteCarloRequest {
+    /// A number of calibrations that can be repeated: ten million take an hour.
+    ///
+    /// # Errors
+    /// What was found and expected.
+    pub fn runs(runs: usize) -> Result<usize, String> {
+        let is_number = (1..=10_000_000).contains(&runs);
+        is_number.then_some(runs).ok_or_else(|| format!("found {runs}, expected 1 to 10,000,000 calibrations"))
+    }
+}
+
 /// What is drawn from.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MonteCarloCase {

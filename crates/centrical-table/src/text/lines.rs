@@ -205,6 +205,12 @@ impl Packed {
 /// What a text is expected to be.
 pub(super) const TABLE: &str = "a table of numbers as text";
 
+/// What the beginning of a text holds if its lines end with CR alone, as those of some old loggers do.
+pub(super) fn ends_of_lines(text: &[u8]) -> Option<(u64, String)> {
+    let is_alone = memchr(b'\n', text).is_none() && memchr_iter(b'\r', text).nth(1).is_some();
+    is_alone.then(|| (0, "lines that end with CR alone; LF or CR LF end a line".to_owned()))
+}
+
 /// The last line, counted from 0, if it is longer than any line of a table.
 pub(super) fn endless_line(text: &[u8]) -> Option<(u64, String)> {
     let start = memrchr(b'\n', &text[..text.len().saturating_sub(1)]).map_or(0, |end| end + 1);

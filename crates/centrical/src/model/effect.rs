@@ -167,13 +167,15 @@ pub enum Course {
     Rise,
     /// The specific force of the plateaus before, each half as much as the next.
     Memory,
+    /// +1 where `f_i` rose since the plateau before, -1 where it fell: hysteresis.
+    Turn,
 }
 
 impl Course {
     /// Whether it depends on what came before a plateau.
     fn is_of_history(self) -> bool {
         match self {
-            Self::Time | Self::TimeScale | Self::Rise | Self::Memory => true,
+            Self::Time | Self::TimeScale | Self::Rise | Self::Memory | Self::Turn => true,
             Self::Spinning | Self::SquaredSpeed | Self::Yield => false,
         }
     }

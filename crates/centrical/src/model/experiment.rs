@@ -124,6 +124,9 @@ pub struct History {
     pub rise: f64,
     /// Nominal specific force of the plateaus before, each half as much as the next [m/s^2].
     pub memory: Vector3<f64>,
+    /// `d / sqrt(d^2 + d0^2)` of the change `d` of the nominal specific force since the plateau before, on each axis; zero for the first
+    /// plateau of a mounting on the arm. Below `d0`, a twentieth of g, no force turns by intent.
+    pub turn: Vector3<f64>,
     /// Index of the first of the rests of this mounting at this angle, where there are several: equal forces round alike.
     pub repeats: Option<usize>,
 }

@@ -76,7 +76,7 @@ pub enum Difference {
 
 impl Extension {
     /// Every extension with its name as written in sessions and plans.
-    pub const NAMED: [(&'static str, Self); 31] = [
+    pub const NAMED: [(&'static str, Self); 32] = [
         ("elastic-turn-speed", Self::ElasticTurn(Law::Speed)),
         ("elastic-turn-load", Self::ElasticTurn(Law::Load)),
         ("arm-stretch-speed", Self::ArmStretch(Law::Speed)),
@@ -108,6 +108,7 @@ impl Extension {
         ("scale-drift", Self::Disturbance(Course::TimeScale)),
         ("rise-fall", Self::Disturbance(Course::Rise)),
         ("memory", Self::Disturbance(Course::Memory)),
+        ("hysteresis", Self::Disturbance(Course::Turn)),
     ];
 
     /// The extension of a name: one of [`Extension::NAMED`], or that of one mounting or one set speed, counted from 1: `other-unit[7]`.
@@ -284,6 +285,7 @@ fn disturbance(axis: usize, follows: Course) -> Parameter {
         Course::TimeScale => ("scale_drift", "1", 1e-3),
         Course::Rise => ("rise_fall", "m/s^2", BIAS),
         Course::Memory => ("memory", "1", 1e-3),
+        Course::Turn => ("hysteresis", "m/s^2", BIAS),
     };
     let name = format!("{stem}_{}", axis + 1);
     effect(name, unit, Group::Disturbance, Effect::Disturbance { axis, follows }, typical)

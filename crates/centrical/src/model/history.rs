@@ -4,7 +4,8 @@ use std::collections::HashMap;
 
 use nalgebra::Vector3;
 
-use super::experiment::{Experiment, History, SetPoint};
+use super::experiment::{Experiment, History, STANDARD_GRAVITY, SetPoint};
+
 use super::nominal::nominal;
 
 /// The part of a plateau's force that is remembered on the next.
@@ -13,7 +14,7 @@ const REMEMBERED: f64 = 0.5;
 /// Fills in the history of every plateau of `experiment`, in the order of its set points.
 pub(super) fn fill(experiment: &mut Experiment) {
     let last = experiment.set_points.len().saturating_sub(1).max(1) as f64;
-    let (mut memory, mut rise, mut previous) = (Vector3::zeros(), 0.0, None);
+    let (mut memory, mut rise, mut previous, mut force) = (Vector3::zeros(), 0.0, None, None);
     for n in 0..experiment.set_points.len() {
         let set_point = experiment.set_points[n];
         let speed = set_point.omega.abs();
@@ -26,10 +27,21 @@ pub(super) fn fill(experiment: &mut Experiment) {
             Some(_) => rise,
         };
         previous = Some((set_point.mounting, speed));
-        experiment.set_points[n].history = History { time: n as f64 / last - 0.5, rise, memory, repeats: None };
-        memory = (memory + nominal(experiment, &set_point)) * REMEMBERED;
+        let here = nominal(experiment, &set_point);
+        // A unit that is mounted on the arm has been turned on the way there.
+        let is_known = before.is_some() || !experiment.is_on_arm(set_point.mounting);
+        let turn = force.filter(|_| is_known).map_or(Vector3::zeros(), |force: Vector3<f64>| (here - force).map(sense));
+        force = Some(here);
+        experiment.set_points[n].history = History { time: n as f64 / last - 0.5, rise, memory, turn, repeats: None };
+        memory = (memory + here) * REMEMBERED;
     }
     mark_repeated_rests(&mut experiment.set_points);
+}
+
+/// Sense of a change [m/s^2] of a force: 1 or -1 where it is large.
+fn sense(change: f64) -> f64 {
+    const BY_INTENT: f64 = 0.05 * STANDARD_GRAVITY;
+    change / change.hypot(BY_INTENT)
 }
 
 /// The first of the set points that are alike, for each: of the same mounting, speed and angle.

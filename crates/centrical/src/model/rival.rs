@@ -115,6 +115,7 @@ impl Rival {
                 Extension::Disturbance(Course::TimeScale) => "t f_i",
                 Extension::Disturbance(Course::Rise) => "+1 after a rise of Omega, -1 after a fall",
                 Extension::Disturbance(Course::Memory) => "sum_n 2^-n f_i, n plateaus before",
+                Extension::Disturbance(Course::Turn) => "+1 after a rise of f_i, -1 after a fall",
                 Extension::OneSpeed(_) => "d f / d ln Omega^2 at one set speed",
                 Extension::OneMounting(Difference::Shift, _) => "P D e_1, P D e_2 in one mounting",
                 Extension::OneMounting(Difference::Turn, _) => "delta in one mounting",

@@ -108,6 +108,7 @@ impl MeasurementModel {
             Course::TimeScale => history.time * f0(),
             Course::Rise => history.rise,
             Course::Memory => history.memory[axis],
+            Course::Turn => history.turn[axis],
         }
     }
 }

@@ -47,6 +47,7 @@ pub struct ReducedMounting {
     clock_offset: Option<ClockOffset>,
     agreement: Option<ClockAgreement>,
     readings: Vec<Option<SpeedReading>>,
+    unscheduled: Vec<[f64; 2]>,
 }
 
 /// Averages a plateau from the samples of its window, without the `repeated` ones that had the stamp of the one before; samples
@@ -89,25 +90,42 @@ impl<'a> Averaging<'a> {
         let samples = Samples::cut_out(record, repeated, self.window, self.blocks);
         let mut strips = Strips::of(&samples, std::mem::take(&mut self.fitted));
         let so_far = self.fit.take().map(|(_, coefficients)| coefficients);
-        strips.judge(&so_far.unwrap_or_else(|| samples.fit_of_medians()), false);
-        let mut once_out = false;
-        self.fit = loop {
-            let good = strips.good();
-            if 2 * good <= samples.len() {
-                return Err(samples.unsteady(index, good));
-            }
-            let (triangle, coefficients) = strips.solve().ok_or_else(|| self.aliased())?;
-            if !strips.judge(&coefficients, once_out) {
-                break Some((triangle, coefficients));
-            }
-            // From the second fit on, a rejected sample stays out: the set shrinks, and the loop ends.
-            once_out = true;
-        };
+        let mut fit = self.fit_from(&samples, &mut strips, &so_far.unwrap_or_else(|| samples.fit_of_medians()));
+        if strips.rejects_in_steps() {
+            // A tone at half the sampling rate has two levels and the median takes one, at a third two of three: the mean is between them.
+            strips.take_all();
+            let (_, of_all) = strips.solve().ok_or_else(|| self.aliased())?;
+            fit = self.fit_from(&samples, &mut strips, &of_all);
+        }
+        self.fit = Some(fit?);
         check_range(&samples, &strips, index)?;
         self.left_out += samples.left_out(self.last, samples.len() - strips.good(), strips.stuck_and_unreadable());
         self.last = samples.t.last().copied();
         self.fitted = strips.into_fitted();
         Ok(())
+    }
+
+    /// The fit of the samples that are good by it, from one with these coefficients.
+    fn fit_from(
+        &self,
+        samples: &Samples,
+        strips: &mut Strips,
+        coefficients: &[Vector3<f64>],
+    ) -> Result<(Triangle, Vec<Vector3<f64>>), ReductionError> {
+        strips.judge(coefficients, false);
+        let mut once_out = false;
+        loop {
+            let good = strips.good();
+            if 2 * good <= samples.len() {
+                return Err(samples.unsteady(self.index, good));
+            }
+            let (triangle, coefficients) = strips.solve().ok_or_else(|| self.aliased())?;
+            if !strips.judge(&coefficients, once_out) {
+                return Ok((triangle, coefficients));
+            }
+            // From the second fit on, a rejected sample stays out: the set shrinks, and the loop ends.
+            once_out = true;
+        }
     }
 
     /// Ends the plateau.
@@ -149,8 +167,8 @@ impl<'a> Averaging<'a> {
 impl ReducedMounting {
     /// The mounting of located plateaus, averaged, in the order of the schedule.
     pub fn new(located: Located, plateaus: Vec<PlateauFit>) -> Self {
-        let Located { speeds, settling_time, clock_offset, agreement, readings, .. } = located;
-        Self { plateaus, speeds, settling_time, clock_offset, agreement, readings }
+        let Located { speeds, settling_time, clock_offset, agreement, readings, unscheduled, .. } = located;
+        Self { plateaus, speeds, settling_time, clock_offset, agreement, readings, unscheduled }
     }
 
     /// A record of rests, those that are steady.
@@ -162,6 +180,11 @@ impl ReducedMounting {
     /// Number of its plateaus.
     pub fn plateau_count(&self) -> usize {
         self.plateaus.len()
+    }
+
+    /// Plateaus that the record shows and the schedule does not have, from and to, the record's clock [s].
+    pub fn unscheduled(&self) -> &[[f64; 2]] {
+        &self.unscheduled
     }
 
     /// Time constant of the settling after a ramp [s]; `None` if the record shows no settling.
@@ -190,7 +213,12 @@ fn check_range(samples: &Samples, strips: &Strips, index: usize) -> Result<(), R
     let is_noisy = |axis: &usize| samples.white[*axis] > samples.digit[*axis] && samples.repeat_rate[*axis] < 1.0;
     let looked_at = (0..3).filter(is_noisy).filter(|axis| may_be_piled_up(strips.most_at_an_end(*axis)));
     for axis in looked_at {
-        if let Some((value, piled_up)) = piled_up(strips.good_readings(axis)) {
+        let mut readings = strips.good_readings(axis);
+        // A sensor that is slower than its recorder gives each reading several times: it counts once.
+        if samples.repeat_rate[axis] > 0.5 {
+            readings.dedup();
+        }
+        if let Some((value, piled_up)) = piled_up(readings) {
             let (window, samples) = (samples.window.span, samples.len());
             return Err(ReductionError::Saturated { index, window, axis, value, samples, piled_up });
         }

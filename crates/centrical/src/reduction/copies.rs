@@ -42,28 +42,32 @@ pub struct RepeatedRests {
 /// own table of rests. Of each rest the mean and the least standard deviation that it can have are given, zero where it is not known; pairs
 /// without any are left out.
 ///
-/// At every distance in the order of rests, pairs are counted whose means differ by a chi^2 of 0.5 at most. Of rests that are laid in the same
-/// attitudes again, some are by chance (binomial law); copies are nearly all.
+/// At every distance in the order of rests, pairs are counted whose means differ by a chi^2 up to each of the levels [`ALIKE`]. Of rests that
+/// are laid in the same attitudes again, some are by chance (binomial law). Copies are nearly all, and where two files overlap, the pairs in
+/// the overlap are far more alike than chance allows.
 pub fn repeated_rests(rests: &[(Vector3<f64>, Vector3<f64>)]) -> Option<RepeatedRests> {
-    let is_alike = |(earlier, later): &(usize, usize)| {
-        let ((one, of_one), (other, of_other)) = (rests[*earlier], rests[*later]);
+    let square = |(earlier, later): (usize, usize)| {
+        let ((one, of_one), (other, of_other)) = (rests[earlier], rests[later]);
         let noise = of_one.sup(&of_other);
-        let squares = (one - other).component_div(&noise).norm_squared() / 2.0;
-        noise.min() > 0.0 && squares <= ALIKE
+        (noise.min() > 0.0).then(|| ((one - other).component_div(&noise).norm_squared() / 2.0, (earlier, later)))
     };
-    let chance = 1.0 - chi_squared_tail(ALIKE, 3);
-    let repeated = (1..rests.len()).filter_map(|distance| {
-        let pairs = || (0..rests.len() - distance).map(|n| (n, n + distance)).filter(is_alike);
-        let (first, count) = (pairs().next()?, pairs().count());
-        let law = Binomial::new(chance, (rests.len() - distance) as u64).ok()?;
-        let by_chance = rests.len() as f64 * law.sf(count as u64 - 1);
-        (by_chance < IMPROBABLE).then_some(RepeatedRests { first, count })
+    let tests = (rests.len() * ALIKE.len()) as f64;
+    let repeated = (1..rests.len()).flat_map(|distance| {
+        let squares: Vec<_> = (0..rests.len() - distance).filter_map(|n| square((n, n + distance))).collect();
+        let at_level = move |level: f64| {
+            let mut alike = squares.iter().filter(|(square, _)| *square <= level).map(|(_, pair)| *pair);
+            let (first, count) = (alike.next()?, 1 + alike.count());
+            let law = Binomial::new(1.0 - chi_squared_tail(level, 3), squares.len() as u64).ok()?;
+            (tests * law.sf(count as u64 - 1) < IMPROBABLE).then_some(RepeatedRests { first, count })
+        };
+        ALIKE.into_iter().filter_map(at_level)
     });
     repeated.max_by_key(|repeated| repeated.count)
 }
 
-/// Limit of chi^2 with three components. Of rests in one attitude 8 % stay below it; of copies that share nineteen samples of twenty, 98 %.
-const ALIKE: f64 = 0.5;
+/// Levels of chi^2 with three components. Of rests in one attitude 8 % stay below the first; of copies that share nineteen samples of
+/// twenty, 98 %. Below the last is one in two million.
+const ALIKE: [f64; 5] = [0.5, 0.1, 0.02, 2e-3, 2e-4];
 
 /// Probability of a refusal by chance.
 const IMPROBABLE: f64 = 1e-9;

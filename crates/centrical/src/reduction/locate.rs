@@ -46,6 +46,8 @@ pub struct Located {
     pub(super) agreement: Option<ClockAgreement>,
     /// Speed on each plateau with its scatter, by the telemetry or the counter of revolutions.
     pub(super) readings: Vec<Option<SpeedReading>>,
+    /// Plateaus that the schedule does not have, from and to [s].
+    pub(super) unscheduled: Vec<[f64; 2]>,
     /// Schedule and ramps of the record.
     schedule: Vec<ScheduledPlateau>,
     ramps: Vec<clock::Ramp>,
@@ -62,6 +64,7 @@ pub fn locate(
 ) -> Result<Located, ReductionError> {
     let blocks = survey.blocks()?;
     let cores = align::align(&blocks, schedule)?;
+    let unscheduled = align::unscheduled(&blocks, schedule, &cores);
     let ramps = clock::Ramp::all(&blocks, schedule, &cores);
     let (clock_offset, agreement) = match telemetry {
         Some(telemetry) => {
@@ -75,8 +78,18 @@ pub fn locate(
     let speeds = windows.iter().map(speed).collect();
     let readings = vec![None; schedule.len()];
     let schedule = schedule.to_vec();
-    let mut located =
-        Located { blocks, windows, settling_time, speeds, clock_offset, agreement, readings, schedule, ramps };
+    let mut located = Located {
+        blocks,
+        windows,
+        settling_time,
+        speeds,
+        clock_offset,
+        agreement,
+        readings,
+        unscheduled,
+        schedule,
+        ramps,
+    };
     if let (Some(telemetry), Some(offset), true) = (telemetry, clock_offset, located.is_of_the_record()) {
         let (margin, step) = (located.margin(&telemetry.t), telemetry.step());
         located.read(|window| telemetry.speed(&offset, window, margin, step));
@@ -132,6 +145,7 @@ impl Located {
             readings: vec![None; windows.len()],
             clock_offset: None,
             agreement: None,
+            unscheduled: Vec::new(),
             ramps: Vec::new(),
             blocks,
             windows,

@@ -19,6 +19,11 @@ pub struct Mistake {
 }
 
 impl Mistake {
+    /// Mistakes of the columns alone: orders of the axes and signs.
+    pub fn of_columns() -> impl Iterator<Item = Self> {
+        Self::all().into_iter().filter(|mistake| mistake.factor == 1.0)
+    }
+
     /// Every mistake: orders of the axes, signs and units, but for the record as it stands.
     pub(super) fn all() -> Vec<Self> {
         const ORDERS: [[u8; 3]; 6] = [[0, 1, 2], [1, 0, 2], [0, 2, 1], [2, 1, 0], [1, 2, 0], [2, 0, 1]];
@@ -50,7 +55,7 @@ impl Mistake {
     }
 
     /// The reading in place of the expected `f_z`.
-    pub(super) fn reading(&self, f_z: &Vector3<f64>) -> Vector3<f64> {
+    pub fn reading(&self, f_z: &Vector3<f64>) -> Vector3<f64> {
         let row = |i: usize| Vector3::ith(usize::from(self.source[i]), self.factor * f64::from(self.sign[i]));
         Matrix3::from_columns(&[row(0), row(1), row(2)]).transpose() * f_z
     }

@@ -253,6 +253,7 @@ fn mountings(model: &MeasurementModel, reduced: &Reduced) -> Vec<MountingSummary
             settling_time: findings.and_then(|f| f.settling_time),
             clock_offset: findings.and_then(|f| f.clock_offset).map(|offset| offset.seconds),
             interpolated: findings.and_then(|f| f.interpolated),
+            unscheduled: findings.map(|f| f.unscheduled.clone()).unwrap_or_default(),
         }
     };
     experiment.mountings.iter().enumerate().map(summary).collect()

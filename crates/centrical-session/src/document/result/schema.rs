@@ -298,6 +298,9 @@ pub struct MountingSummary {
     /// of its own.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub interpolated: Option<[u64; 3]>,
+    /// Plateaus that the record shows and the schedule does not have, from and to, the record's clock [s].
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub unscheduled: Vec<[f64; 2]>,
 }
 
 /// A plateau.

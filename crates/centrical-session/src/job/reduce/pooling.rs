@@ -28,6 +28,7 @@ pub(super) fn pooled(session: &Session, mountings: Vec<OfRecord>) -> Result<Redu
         clock_offset: m.clock_offset(),
         agreement: m.clock_agreement(),
         interpolated: *interpolated,
+        unscheduled: m.unscheduled().to_vec(),
     };
     let experiment = &session.experiment;
     let on_arm = experiment.set_points.iter().filter(|set_point| experiment.is_on_arm(set_point.mounting));

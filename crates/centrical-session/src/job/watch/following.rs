@@ -337,10 +337,19 @@ impl<'a> Following<'a> {
     }
 }
 
-/// Refuses a group that the model does not have.
+/// Refuses a group that the model does not have, and one that stands twice.
 fn check_groups(wanted: &[String], session: &Session, model: &MeasurementModel) -> Result<(), Error> {
     let mut groups: Vec<&str> = model.parameters().iter().map(|parameter| parameter.group.name()).collect();
     groups.dedup();
+    let twice = wanted.iter().enumerate().find(|(n, group)| wanted[..*n].contains(group));
+    if let Some((_, twice)) = twice {
+        return Err(Error::content(
+            &session.file,
+            Place::Whole,
+            format!("two targets for {twice:?}"),
+            "one for each group",
+        ));
+    }
     match wanted.iter().find(|group| !groups.contains(&group.as_str())) {
         None => Ok(()),
         Some(unknown) => {

@@ -126,7 +126,30 @@ impl<'a> Strips<'a> {
     /// Judges the samples by a fit whose last terms have these coefficients; true if the set of good samples changed. With
     /// `once_out`, bad samples stay out.
     pub fn judge(&mut self, coefficients: &[Vector3<f64>], once_out: bool) -> bool {
-        let limits = self.samples.limits(coefficients).into();
+        self.judge_within(self.samples.limits(coefficients).into(), coefficients, once_out)
+    }
+
+    /// Takes all samples for good that are readable and not stuck.
+    pub fn take_all(&mut self) {
+        let nothing = vec![Vector3::zeros(); self.fitted.terms];
+        self.judge_within([f64::MAX; 3], &nothing, false);
+    }
+
+    /// Whether a fifth of the samples or more are rejected, nearly all of them at one distance from the one before: that is a tone, and no
+    /// spikes.
+    pub fn rejects_in_steps(&self) -> bool {
+        if 5 * (self.samples.len() - self.good()) < self.samples.len() {
+            return false;
+        }
+        let bad = self.part().iter().flat_map(|strip| strip.bad.iter().map(|i| strip.range.start + i));
+        let bad: Vec<usize> = bad.collect();
+        let mut steps: Vec<usize> = bad.windows(2).map(|pair| pair[1] - pair[0]).collect();
+        steps.sort_unstable();
+        let commonest = steps.chunk_by(usize::eq).max_by_key(|same| same.len());
+        commonest.is_some_and(|same| same[0] > 1 && 5 * same.len() >= 4 * steps.len())
+    }
+
+    fn judge_within(&mut self, limits: [f64; 3], coefficients: &[Vector3<f64>], once_out: bool) -> bool {
         let fit = Fit { coefficients: self.fitted.less_reference(coefficients), limits, once_out };
         let mut changed = false;
         self.each(|strip, strips, room| changed |= widest(Judgement { strip, strips, fit: &fit, room }));

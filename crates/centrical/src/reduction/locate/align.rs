@@ -7,6 +7,7 @@ use nalgebra::Vector3;
 use rayon::prelude::*;
 
 use super::evidence::{Candidate, Evidence};
+use super::hypothesis::Line;
 use super::path::Trellis;
 use super::{band, hypothesis, rotation};
 use crate::reduction::error::{ReductionError, Stretch};
@@ -71,6 +72,28 @@ fn shows_more(louder: &Evidence, quiet: &Evidence) -> bool {
     quiet.steady_stretches().into_iter().for_each(|stretch| is_steady[stretch].fill(true));
     let more = |stretch: Range<usize>| is_steady[stretch].iter().filter(|is_steady| !**is_steady).count();
     louder.steady_stretches().into_iter().any(|stretch| more(stretch) >= blocks.least(0.0))
+}
+
+/// Spans [s] of steady stretches outside all cores that are under load and half as long as the shortest core or longer: plateaus that the
+/// schedule does not have.
+pub(super) fn unscheduled(blocks: &Blocks, schedule: &[ScheduledPlateau], cores: &[Range<usize>]) -> Vec<[f64; 2]> {
+    /// Load of the slowest scheduled plateau from which on a stretch is not at rest.
+    const UNDER_LOAD: f64 = 0.1;
+    let seen = schedule.iter().zip(cores).map(|(plateau, core)| (plateau.omega, blocks.level(core)));
+    let slowest = schedule.iter().map(|plateau| plateau.omega.powi(2)).filter(|square| *square > 0.0).reduce(f64::min);
+    let (Some(line), Some(slowest)) = (Line::through(seen), slowest) else { return Vec::new() };
+    let least = cores.iter().map(Range::len).min().unwrap_or(0).div_ceil(2);
+    let is_outside = |range: &Range<usize>| cores.iter().all(|core| range.end <= core.start || core.end <= range.start);
+    let is_under_load = |range: &Range<usize>| line.square(&blocks.level(range)) > UNDER_LOAD * slowest;
+    let stretches = Evidence::new(blocks).steady_stretches().into_iter();
+    let found = stretches.filter(|range| range.len() >= least && is_outside(range) && is_under_load(range));
+    found.map(|range| span(blocks, &range)).collect()
+}
+
+/// From the begin of the first block to the end of the last [s].
+fn span(blocks: &Blocks, range: &Range<usize>) -> [f64; 2] {
+    let half = 0.5 * blocks.width;
+    [blocks.t[range.start] - half, blocks.t[range.end - 1] + half]
 }
 
 /// The most probable path of a record through a schedule, by one noise for all plateaus.
@@ -178,10 +201,9 @@ fn missing(cores: &[Range<usize>]) -> Option<usize> {
 
 /// A steady stretch, and the plateau it was taken for.
 fn stretch(blocks: &Blocks, range: Range<usize>, cores: &[Range<usize>], candidates: &[Candidate]) -> Stretch {
-    let half = 0.5 * blocks.width;
     let middle = usize::midpoint(range.start, range.end);
     Stretch {
-        window: [blocks.t[range.start] - half, blocks.t[range.end - 1] + half],
+        window: span(blocks, &range),
         level_z: blocks.level(&range),
         plateau: cores.iter().position(|core| core.contains(&middle)),
         resembles: (0..cores.len()).filter(|k| candidates[*k].has_level(middle)).collect(),

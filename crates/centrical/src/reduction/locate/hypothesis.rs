@@ -97,6 +97,11 @@ impl Line {
         (fastest.0 > slowest.0).then(|| Self { a: slowest.1 - c * slowest.0, c, fastest: fastest.0 })
     }
 
+    /// Square of the speed at which a plateau reads `f` [rad^2/s^2].
+    pub fn square(&self, f: &Vector3<f64>) -> f64 {
+        (f - self.a).dot(&self.c) / self.c.norm_squared()
+    }
+
     fn under(&self, mistake: &Mistake) -> Self {
         Self { a: mistake.reading(&self.a), c: mistake.reading(&self.c), fastest: self.fastest }
     }

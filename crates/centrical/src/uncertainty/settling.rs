@@ -1,0 +1,59 @@
+//! Readings that settle after the unit was turned: creep, viscous damping, a temperature that follows the attitude.
+//!
+//! What settles leaves slopes in rests in proportion to the change `x` of the reading before each, along the force:
+//!
+//! `s_n = n_n^T b + c x_n + noise`, `x_n = n_n^T (m_n - m_{n-1})`,
+//!
+//! with the direction `n` of the force, the mean `m` of a rest, and a drift `b` of the biases. Across the force a slope is one of the attitude.
+
+use nalgebra::{DMatrix, DVector, Vector3};
+
+use super::drift::Slope;
+use crate::statistics::f_tail;
+
+/// A drift of three biases, and the settling.
+const TERMS: usize = 4;
+
+/// A column shorter than this part of what it was is a combination of those before it.
+const DEPENDENT: f64 = 1e-3;
+
+/// Slopes of rests as they follow the change of the reading before them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Settling {
+    /// Slope over the change [1/s]: positive where readings go on in the direction of the change.
+    pub rate: f64,
+    /// Its standard uncertainty, by the noise within rests or the scatter of the slopes, whichever is larger [1/s].
+    pub standard_uncertainty: f64,
+    /// Probability of so large a rate by chance (F test).
+    pub probability: f64,
+}
+
+impl Settling {
+    /// Of rests that follow another one in their record: slope, mean reading, and change of the mean since the rest before, [m/s^3] and
+    /// [m/s^2]. `None` where they are too few, or drift and settling are one.
+    pub fn of(rests: &[(Slope, Vector3<f64>, Vector3<f64>)]) -> Option<Self> {
+        let degrees_of_freedom = rests.len().checked_sub(TERMS).filter(|count| *count > 0)?;
+        let mut design = DMatrix::zeros(rests.len(), TERMS);
+        let mut slopes = DVector::zeros(rests.len());
+        for (n, (slope, mean, change)) in rests.iter().enumerate() {
+            let along = mean.normalize();
+            let u = along.component_mul(&slope.standard_uncertainty).norm();
+            let row = [along.x, along.y, along.z, along.dot(change)].map(|value| value / u);
+            design.row_mut(n).copy_from_slice(&row);
+            slopes[n] = along.dot(&slope.slope) / u;
+        }
+        let whole = design.column(TERMS - 1).norm();
+        let factor = design.qr();
+        let of_rate = factor.r()[(TERMS - 1, TERMS - 1)];
+        factor.q_tr_mul(&mut slopes);
+        let remaining: f64 = slopes.rows_range(TERMS..).norm_squared();
+        let scatter = (remaining / degrees_of_freedom as f64).max(1.0);
+        let along_rate = slopes[TERMS - 1];
+        let is_seen = along_rate.is_finite() && of_rate.abs() > DEPENDENT * whole;
+        is_seen.then(|| Self {
+            rate: along_rate / of_rate,
+            standard_uncertainty: scatter.sqrt() / of_rate.abs(),
+            probability: f_tail(along_rate * along_rate / scatter, 1, degrees_of_freedom),
+        })
+    }
+}
