@@ -48,14 +48,14 @@ pub use document::{
 };
 pub use document::{
     AxesName, AxesParameter, AxesSummary, BetweenRestsSummary, BudgetSource, BudgetSummary, CalibrationResult,
-    ChosenRest, ChosenRests, CombinationReport, ConditionReport, ConvergenceSummary, CriterionName, DifferenceExtent,
-    DriftSummary, FitSummary, FollowedSpeeds, Follows, FrontierRow, GoalReport, GroupReport, HistoryEntry,
-    HistoryEstimate, InnovationSummary, LeftOutSummary, LostCombination, Method, ModelSummary, MountingPrediction,
-    MountingSummary, NextAttitudeSummary, NoiseAnalysis, ObservabilityReport, ObservabilitySummary, ObservedParameter,
-    OutlyingPlateau, OutputSummary, PairReport, ParameterEstimate, PatternSummary, PlanReport, PlannedMounting,
-    PlannedPlateau, PlateauDriftVerdict, PlateauSummary, PositionSummary, PredictedParameter, PredictionReport,
-    PriorSummary, Program, ReadingNoise, ReasonReport, RemedyReport, RepeatedPlateau, RestsOn, ResultObjection,
-    RivalSize, RivalSummary, SCHEMA, SessionDriftVerdict, SessionSummary, SessionTrend, SettlingSummary, SightReport,
+    ChosenRest, ChosenRests, CombinationReport, ConditionReport, ConvergenceSummary, CreepSummary, CriterionName,
+    DifferenceExtent, DriftSummary, FitSummary, FollowedSpeeds, Follows, FrontierRow, GoalReport, GroupReport,
+    HistoryEntry, HistoryEstimate, InnovationSummary, LeftOutSummary, LostCombination, Method, ModelSummary,
+    MountingPrediction, MountingSummary, NextAttitudeSummary, NoiseAnalysis, ObservabilityReport, ObservabilitySummary,
+    ObservedParameter, OutlyingPlateau, OutputSummary, PairReport, ParameterEstimate, PatternSummary, PlanReport,
+    PlannedMounting, PlannedPlateau, PlateauDriftVerdict, PlateauSummary, PositionSummary, PredictedParameter,
+    PredictionReport, PriorSummary, Program, ReadingNoise, ReasonReport, RemedyReport, RepeatedPlateau, RestsOn,
+    ResultObjection, RivalSize, RivalSummary, SCHEMA, SessionDriftVerdict, SessionSummary, SessionTrend, SightReport,
     SpeedDifference, SpeedFinding, SpeedsSummary, StabilityCurve, StepReport, Subject, TermSummary, TiltSummary,
     TiltVerdict, ValiditySummary, WatchState, WatchedPlateau, read_history, unit_name,
 };

@@ -98,22 +98,22 @@ fn squared_error(result: &Value) -> f64 {
 }
 
 #[test]
-fn what_settles_after_a_turn_is_objected_to() {
+fn creep_after_a_turn_is_objected_to() {
     let copy = Copy::new();
-    let settling = |part: f64| {
+    let creep = |part: f64| {
         move |s: &Sample| [0, 1, 2].map(|axis| s.reading[axis] - part * s.change[axis] * (-s.since / 3.0).exp())
     };
-    write(&copy, "a.csv", &rows(100, 2e-3, 1, settling(2e-4)));
+    write(&copy, "a.csv", &rows(100, 2e-3, 1, creep(2e-4)));
     let (code, said, result) = tumble(&copy, &["a.csv"]);
     assert_eq!(code, 1, "{said}");
-    assert!(said.contains("readings settle after each turn, and rests are too short for that"), "{said}");
-    assert!(said.contains("after a turn readings go on by "), "{said}");
-    assert!(result.unwrap()["drift"]["settling"]["rate"].as_f64().unwrap() > 0.0);
+    assert!(said.contains("readings creep after each turn, and rests are too short for that"), "{said}");
+    assert!(said.contains("creep after each turn: "), "{said}");
+    assert!(result.unwrap()["drift"]["creep"]["rate"].as_f64().unwrap() > 0.0);
     for seed in 2..6 {
-        write(&copy, "a.csv", &rows(100, 2e-3, seed, settling(0.0)));
+        write(&copy, "a.csv", &rows(100, 2e-3, seed, creep(0.0)));
         let (code, said, result) = tumble(&copy, &["a.csv"]);
         assert_eq!(code, 0, "{said}");
-        assert!(!said.contains("after a turn readings go on"), "{said}");
+        assert!(!said.contains("creep after each turn"), "{said}");
         let error = squared_error(&result.unwrap());
         assert!(error < 4.0, "{error}");
     }

@@ -35,8 +35,8 @@ pub(crate) fn objection(objection: &ResultObjection, language: Language) -> Stri
         Objection::Drift { chi_squared, degrees_of_freedom, chance } => {
             too_large(messages.readings_drift, (*chi_squared, *degrees_of_freedom, *chance), language)
         }
-        Objection::Settling(chance) => {
-            format!("{}, {} {}", messages.readings_settle, messages.chance, language.probability(*chance))
+        Objection::Creep(chance) => {
+            format!("{}, {} {}", messages.readings_creep, messages.chance, language.probability(*chance))
         }
         Objection::NotDetermined(names) => format!("{}: {}", messages.lost_parameters, names.join(", ")),
     }

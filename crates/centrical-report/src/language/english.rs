@@ -72,7 +72,7 @@ pub(crate) const ENGLISH: Messages = Messages {
     drift_over_session: "Drift over the session",
     plateaus_drift: "plateaus drift",
     plateaus_drift_with_speed: "plateaus drift no more than their speeds may run",
-    readings_settle: "readings settle after each turn, and rests are too short for that: their slopes follow the change of the reading before them",
+    readings_creep: "readings creep after each turn, and rests are too short for that: their slopes follow the change of the reading before them",
     readings_drift: "readings drift over plateaus by more than slow noise and the speeds explain: a temperature, a bias, a speed that has not settled or changed unseen",
     session_drifts: "the session drifts",
     no_drift: "no drift seen",

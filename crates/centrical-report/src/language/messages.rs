@@ -64,7 +64,7 @@ pub(crate) struct Messages {
     pub plateaus_drift: &'static str,
     pub plateaus_drift_with_speed: &'static str,
     pub readings_drift: &'static str,
-    pub readings_settle: &'static str,
+    pub readings_creep: &'static str,
     pub session_drifts: &'static str,
     pub no_drift: &'static str,
     pub drift_or_chance: &'static str,

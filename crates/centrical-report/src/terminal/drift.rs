@@ -1,8 +1,8 @@
 //! How steady the readings were, as text for the terminal.
 
 use centrical_session::{
-    CalibrationResult, DriftSummary, LeftOutSummary, MICRO_G, PlateauDriftVerdict, SessionDriftVerdict,
-    SettlingSummary, TiltSummary, TiltVerdict,
+    CalibrationResult, CreepSummary, DriftSummary, LeftOutSummary, MICRO_G, PlateauDriftVerdict, SessionDriftVerdict,
+    TiltSummary, TiltVerdict,
 };
 
 use super::screen::Screen;
@@ -15,7 +15,7 @@ pub(super) fn drift(screen: &mut Screen, result: &CalibrationResult) {
     left_out(screen, result);
     if let Some(drift) = &result.drift {
         over_plateaus(screen, drift);
-        settling(screen, drift);
+        creep(screen, drift);
         over_session(screen, drift);
         repeats(screen, drift);
     }
@@ -68,14 +68,14 @@ fn over_plateaus(screen: &mut Screen, drift: &DriftSummary) {
 }
 
 /// Where slopes of rests follow the change of the reading before.
-fn settling(screen: &mut Screen, drift: &DriftSummary) {
-    let Some(settling) = drift.settling.filter(SettlingSummary::is_real) else { return };
-    let (rate, u) = with_uncertainty(1e6 * settling.rate, 1e6 * settling.standard_uncertainty);
+fn creep(screen: &mut Screen, drift: &DriftSummary) {
+    let Some(creep) = drift.creep.filter(CreepSummary::is_real) else { return };
+    let (rate, u) = with_uncertainty(1e6 * creep.rate, 1e6 * creep.standard_uncertainty);
     screen.fact(
         "",
         &format!(
-            "after a turn readings go on by {rate} ± {u} ppm of its change a second, chance {}",
-            Language::English.probability(settling.probability)
+            "creep after each turn: {rate} ± {u} ppm of the change a second, chance {}",
+            Language::English.probability(creep.probability)
         ),
     );
 }

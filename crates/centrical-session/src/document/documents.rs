@@ -69,8 +69,8 @@ pub enum ObjectionName {
     Speeds,
     /// Readings drift over plateaus.
     Drift,
-    /// Readings settle after the unit is turned.
-    Settling,
+    /// Readings creep after the unit is turned.
+    Creep,
     /// Coefficients of the error model are not determined.
     NotDetermined,
 }
@@ -86,7 +86,7 @@ impl ObjectionName {
             Self::Patterns => "patterns",
             Self::Speeds => "speeds",
             Self::Drift => "drift",
-            Self::Settling => "settling",
+            Self::Creep => "creep",
             Self::NotDetermined => "not-determined",
         }
     }
@@ -102,7 +102,7 @@ impl From<&ResultObjection> for ObjectionName {
             ResultObjection::Patterns(..) => Self::Patterns,
             ResultObjection::Speeds(..) => Self::Speeds,
             ResultObjection::Drift { .. } => Self::Drift,
-            ResultObjection::Settling(..) => Self::Settling,
+            ResultObjection::Creep(..) => Self::Creep,
             ResultObjection::NotDetermined(..) => Self::NotDetermined,
         }
     }

@@ -2,7 +2,7 @@
 
 use centrical::reduction::LeftOut;
 use centrical::uncertainty::{
-    Level, OncePerRevolution, PlateauDrift, Repeat, SessionDrift, Settling, Slope, TiltComparison, chi_squared_tail,
+    Creep, Level, OncePerRevolution, PlateauDrift, Repeat, SessionDrift, Slope, TiltComparison, chi_squared_tail,
     repeats, slope_of_speed,
 };
 use centrical::{Calibration, Experiment, FitError, Observation, SetPoint};
@@ -48,7 +48,7 @@ pub struct DriftSummary {
     pub beyond_speed: Option<f64>,
     /// Slopes of rests as they follow the change of the reading before them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub settling: Option<SettlingSummary>,
+    pub creep: Option<CreepSummary>,
     /// Trend of the residuals with the order of the plateaus; empty where the unknowns follow it.
     pub over_session: Vec<SessionTrend>,
     /// Plateaus of one mounting that were run again.
@@ -56,9 +56,9 @@ pub struct DriftSummary {
     pub repeats: Vec<RepeatedPlateau>,
 }
 
-/// Readings that settle after the unit was turned.
+/// Readings that creep after the unit was turned.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct SettlingSummary {
+pub struct CreepSummary {
     /// Slope over a rest per change of the reading before it [1/s].
     pub rate: f64,
     /// Its standard uncertainty [1/s].
@@ -67,7 +67,7 @@ pub struct SettlingSummary {
     pub probability: f64,
 }
 
-impl SettlingSummary {
+impl CreepSummary {
     /// Whether chance is ruled out.
     pub fn is_real(&self) -> bool {
         Level::Real.is_passed_by(self.probability)
@@ -276,7 +276,7 @@ impl DriftSummary {
             degrees_of_freedom: drift.degrees_of_freedom,
             probability: drift.probability,
             beyond_speed: Some(beyond_speed.chi_squared),
-            settling: settling(experiment, reduced, &slopes),
+            creep: creep(experiment, reduced, &slopes),
             over_session: trends.into_iter().map(SessionTrend::from).collect(),
             repeats: repeated(calibration, reduced),
         }))
@@ -289,8 +289,8 @@ impl From<SessionDrift> for SessionTrend {
     }
 }
 
-/// How the rests apart from the arm settle, each after the one before in its record.
-fn settling(experiment: &Experiment, reduced: &Reduced, slopes: &[Slope]) -> Option<SettlingSummary> {
+/// How the rests apart from the arm creep, each after the one before in its record.
+fn creep(experiment: &Experiment, reduced: &Reduced, slopes: &[Slope]) -> Option<CreepSummary> {
     let is_rest =
         |n: usize| !experiment.is_on_arm(experiment.set_points[n].mounting) && reduced.plateaus[n].arc.is_none();
     let after = |n: usize| {
@@ -299,8 +299,8 @@ fn settling(experiment: &Experiment, reduced: &Reduced, slopes: &[Slope]) -> Opt
         follows.then(|| (slopes[n], plateau.mean, plateau.mean - before.mean))
     };
     let rests: Vec<_> = (1..slopes.len()).filter_map(after).collect();
-    let Settling { rate, standard_uncertainty, probability } = Settling::of(&rests)?;
-    Some(SettlingSummary { rate, standard_uncertainty, probability })
+    let Creep { rate, standard_uncertainty, probability } = Creep::of(&rests)?;
+    Some(CreepSummary { rate, standard_uncertainty, probability })
 }
 
 /// The slopes of all plateaus, less what their speeds explain.

@@ -62,8 +62,8 @@ pub struct Findings<P, Q, R, S> {
     /// chi^2 of the slopes of all plateaus beyond what their speeds explain, and their number, where records show them
     /// ([`PlateauDrift`](super::PlateauDrift)).
     pub slopes: Option<(f64, usize)>,
-    /// Probability of slopes of rests that follow the change of the reading before ([`Settling`](super::Settling)), where rests show them.
-    pub settling: Option<f64>,
+    /// Probability of slopes of rests that follow the change of the reading before ([`Creep`](super::Creep)), where rests show them.
+    pub creep: Option<f64>,
     /// Names of the instrument's parameters that are not determined.
     pub not_determined: Vec<String>,
 }
@@ -108,8 +108,8 @@ pub enum Objection<P, Q, R, S> {
         /// Probability of so large a chi^2.
         chance: f64,
     },
-    /// Readings settle after the unit is turned, and rests are too short for that; with the probability of such slopes by chance.
-    Settling(f64),
+    /// Readings creep after the unit is turned, and rests are too short for that; with the probability of such slopes by chance.
+    Creep(f64),
     /// Parameters of the instrument are not determined. Lost geometry alone is not an objection.
     NotDetermined(Vec<String>),
 }
@@ -127,7 +127,7 @@ pub fn objections<P, Q, R, S>(findings: Findings<P, Q, R, S>) -> Vec<Objection<P
         patterns,
         speeds,
         slopes,
-        settling,
+        creep,
         not_determined,
     } = findings;
     let is_beyond = |probability: f64| Level::Objection.is_passed_by(probability);
@@ -161,7 +161,7 @@ pub fn objections<P, Q, R, S>(findings: Findings<P, Q, R, S>) -> Vec<Objection<P
             objections.push(Objection::Drift { chi_squared, degrees_of_freedom, chance });
         }
     }
-    objections.extend(settling.filter(|chance| is_beyond(*chance)).map(Objection::Settling));
+    objections.extend(creep.filter(|chance| is_beyond(*chance)).map(Objection::Creep));
     if !not_determined.is_empty() {
         objections.push(Objection::NotDetermined(not_determined));
     }
@@ -191,7 +191,7 @@ mod tests {
             patterns: Vec::new(),
             speeds: Vec::new(),
             slopes: Some(slopes),
-            settling: None,
+            creep: None,
             not_determined: Vec::new(),
         })
     }

@@ -42,7 +42,7 @@ impl CalibrationResult {
                 .drift
                 .as_ref()
                 .map(|drift| (drift.beyond_speed.unwrap_or(drift.chi_squared), drift.degrees_of_freedom)),
-            settling: self.drift.as_ref().and_then(|drift| drift.settling).map(|settling| settling.probability),
+            creep: self.drift.as_ref().and_then(|drift| drift.creep).map(|creep| creep.probability),
             not_determined: terms.filter(is_lost).cloned().collect(),
         })
     }

@@ -1,6 +1,6 @@
-//! Readings that settle after the unit was turned: creep, viscous damping, a temperature that follows the attitude.
+//! Creep: readings that still change after the unit was turned, by the material, slow damping, a temperature that follows the attitude.
 //!
-//! What settles leaves slopes in rests in proportion to the change `x` of the reading before each, along the force:
+//! It leaves slopes in rests in proportion to the change `x` of the reading before each, along the force:
 //!
 //! `s_n = n_n^T b + c x_n + noise`, `x_n = n_n^T (m_n - m_{n-1})`,
 //!
@@ -11,7 +11,7 @@ use nalgebra::{DMatrix, DVector, Vector3};
 use super::drift::Slope;
 use crate::statistics::f_tail;
 
-/// A drift of three biases, and the settling.
+/// A drift of three biases, and the creep.
 const TERMS: usize = 4;
 
 /// A column shorter than this part of what it was is a combination of those before it.
@@ -19,7 +19,7 @@ const DEPENDENT: f64 = 1e-3;
 
 /// Slopes of rests as they follow the change of the reading before them.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Settling {
+pub struct Creep {
     /// Slope over the change [1/s]: positive where readings go on in the direction of the change.
     pub rate: f64,
     /// Its standard uncertainty, by the noise within rests or the scatter of the slopes, whichever is larger [1/s].
@@ -28,9 +28,9 @@ pub struct Settling {
     pub probability: f64,
 }
 
-impl Settling {
+impl Creep {
     /// Of rests that follow another one in their record: slope, mean reading, and change of the mean since the rest before, [m/s^3] and
-    /// [m/s^2]. `None` where they are too few, or drift and settling are one.
+    /// [m/s^2]. `None` where they are too few, or drift and creep are one.
     pub fn of(rests: &[(Slope, Vector3<f64>, Vector3<f64>)]) -> Option<Self> {
         let degrees_of_freedom = rests.len().checked_sub(TERMS).filter(|count| *count > 0)?;
         let mut design = DMatrix::zeros(rests.len(), TERMS);
