@@ -42,7 +42,7 @@ pub struct RepeatedRests {
 /// own table of rests. Of each rest the mean and the least standard deviation that it can have are given, zero where it is not known; pairs
 /// without any are left out.
 ///
-/// At every distance in the order of rests, pairs are counted whose means differ by a chi^2 up to each of the levels [`ALIKE`]. Of rests that
+/// At every distance in the order of rests, pairs are counted whose means differ by a chi^2 up to each of five levels. Of rests that
 /// are laid in the same attitudes again, some are by chance (binomial law). Copies are nearly all, and where two files overlap, the pairs in
 /// the overlap are far more alike than chance allows.
 pub fn repeated_rests(rests: &[(Vector3<f64>, Vector3<f64>)]) -> Option<RepeatedRests> {
