@@ -30,7 +30,7 @@ pub use self::folder::Folder;
 pub(crate) use self::form::{Form as ExperimentForm, PlanForm};
 pub use self::plan::{ExpectedValues, Plan};
 pub use self::plateau_name::PlateauName;
-pub(crate) use self::plateaus::write_plateaus_parquet;
+pub(crate) use self::plateaus::{LARGEST_SCALE_ERROR, write_plateaus_parquet};
 pub use self::plateaus::{PlateauMean, PlateauTable, read_plateaus, write_plateaus};
 pub use self::rests::{KnownAttitudes, PlannedRests, RecordedRests, RestSource, RestTable};
 pub(crate) use self::session::EXPERIMENT_FILE;

@@ -5,7 +5,7 @@ use crate::language::Language;
 /// Plateaus that are named at most.
 const NAMED: usize = 4;
 
-/// The plateaus of each mounting that its schedule does not have, as `mounting: from to until`, times in s; `None` where there are none.
+/// The plateaus of each mounting that its schedule does not have, with the times [s] of their begin and end; `None` without any.
 pub fn unscheduled<'a>(mountings: impl IntoIterator<Item = &'a [[f64; 2]]>, language: Language) -> Option<String> {
     let of_mounting = |(number, windows): (usize, &'a [[f64; 2]])| windows.iter().map(move |window| (number, *window));
     let all: Vec<(usize, [f64; 2])> = (1..).zip(mountings).flat_map(of_mounting).collect();

@@ -120,7 +120,7 @@ impl PlateauTable {
         let both = self.rows.iter().zip(nominal);
         let Some((row, nominal)) = both.max_by(|(_, a), (_, b)| a.amax().total_cmp(&b.amax())) else { return Ok(()) };
         let share = row.mean.dot(nominal) / nominal.norm_squared();
-        let is_near = |factor: f64| (share / (factor * factor) - 1.0).abs() < LARGEST_SCALE;
+        let is_near = |factor: f64| (share / (factor * factor) - 1.0).abs() < LARGEST_SCALE_ERROR;
         let Some((unit, _)) = OTHER_SPEEDS.iter().find(|(_, factor)| row.speed != 0.0 && is_near(*factor)) else {
             return Ok(());
         };
@@ -199,8 +199,8 @@ const BEYOND: f64 = 10.0;
 /// Units in which a speed may stand in place of rad/s, each in rad/s.
 const OTHER_SPEEDS: [(&str, f64); 3] = [("rpm", TAU / 60.0), ("rev/s", TAU), ("deg/s", TAU / 360.0)];
 
-/// Largest error of a scale that a unit may have.
-const LARGEST_SCALE: f64 = 0.3;
+/// Largest error of a scale that a unit may have: a nominal scale is known better.
+pub(crate) const LARGEST_SCALE_ERROR: f64 = 0.3;
 
 /// Place of `mean_1` among the columns.
 const MEAN: usize = 3;

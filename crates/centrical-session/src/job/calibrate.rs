@@ -6,7 +6,7 @@ use centrical::{Calibration, Data, FitError, Group, MeasurementModel, OnProgress
 use super::reduce::reduce;
 use crate::document::{BetweenRestsSummary, CalibrationResult, Method, RecordFindings};
 use crate::error::{Error, Place};
-use crate::experiment::{PlateauName, RestTable, Session};
+use crate::experiment::{LARGEST_SCALE_ERROR, PlateauName, RestTable, Session};
 use crate::reduced::Reduced;
 
 /// What is fitted: the plateau means of a session and the model of them.
@@ -195,10 +195,6 @@ pub(super) fn as_result(
     })
 }
 
-/// A scale error that is beyond it, by three standard uncertainties, is of readings in another unit or with the other sign: a nominal scale is
-/// known better.
-const LARGEST_SCALE_ERROR: f64 = 0.3;
-
 /// Of readings in another unit or with the other sign: how many times too large, and what they are.
 const OTHER_READINGS: [(f64, &str); 4] = [
     (-1.0, ", as if its sign were reversed"),
@@ -207,7 +203,8 @@ const OTHER_READINGS: [(f64, &str); 4] = [
     (STANDARD_GRAVITY, ", as if m/s^2 stood for g"),
 ];
 
-/// Records are asked whether another unit or sign fits better; means have no samples to ask.
+/// Refuses a scale error beyond the largest by three standard uncertainties: the readings are in another unit or have the other sign.
+/// Records are asked whether either fits better; means have no samples to ask.
 fn refuse_scale(calibration: &Calibration, session: &Session) -> Result<(), Error> {
     let (model, fit) = (calibration.data().model(), calibration.fit());
     for (j, parameter) in model.parameters().iter().enumerate().filter(|(_, p)| p.group == Group::Scale) {

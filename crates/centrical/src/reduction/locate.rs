@@ -63,8 +63,7 @@ pub fn locate(
     schedule: &[ScheduledPlateau],
 ) -> Result<Located, ReductionError> {
     let blocks = survey.blocks()?;
-    let cores = align::align(&blocks, schedule)?;
-    let unscheduled = align::unscheduled(&blocks, schedule, &cores);
+    let align::Aligned { cores, unscheduled } = align::align(&blocks, schedule)?;
     let ramps = clock::Ramp::all(&blocks, schedule, &cores);
     let (clock_offset, agreement) = match telemetry {
         Some(telemetry) => {

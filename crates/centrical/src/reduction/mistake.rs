@@ -90,3 +90,19 @@ impl fmt::Display for Mistake {
         out.write_str(&parts.join(", "))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::Vector3;
+
+    use super::Mistake;
+
+    #[test]
+    fn all_other_signs_and_orders_are_tried() {
+        let up = Vector3::new(1.0, 2.0, 3.0);
+        let all: Vec<Vector3<f64>> = Mistake::of_columns().map(|mistake| mistake.reading(&up)).collect();
+        assert_eq!(all.len(), 47);
+        assert!(!all.contains(&up));
+        assert!(all.iter().enumerate().all(|(n, one)| !all[..n].contains(one)));
+    }
+}

@@ -37,10 +37,10 @@ impl Creep {
         let mut slopes = DVector::zeros(rests.len());
         for (n, (slope, mean, change)) in rests.iter().enumerate() {
             let along = mean.normalize();
-            let u = along.component_mul(&slope.standard_uncertainty).norm();
+            let [size, u] = slope.in_direction(&along);
             let row = [along.x, along.y, along.z, along.dot(change)].map(|value| value / u);
             design.row_mut(n).copy_from_slice(&row);
-            slopes[n] = along.dot(&slope.slope) / u;
+            slopes[n] = size / u;
         }
         let whole = design.column(TERMS - 1).norm();
         let factor = design.qr();

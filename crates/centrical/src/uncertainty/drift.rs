@@ -22,11 +22,16 @@ impl Slope {
     /// What of it may be a drift: on each newtonometer, or along the force: size, standard uncertainty and direction.
     fn parts(&self) -> Vec<(f64, f64, Vector3<f64>)> {
         let part = |direction: Vector3<f64>| {
-            let u = direction.component_mul(&self.standard_uncertainty).norm();
-            (direction.dot(&self.slope), u, direction)
+            let [size, u] = self.in_direction(&direction);
+            (size, u, direction)
         };
         let axes = || (0..3).map(|axis| Vector3::ith(axis, 1.0)).collect();
         self.along.map_or_else(axes, |along| vec![along]).into_iter().map(part).collect()
+    }
+
+    /// The part in a direction of length 1, and its standard uncertainty [m/s^3].
+    pub(super) fn in_direction(&self, direction: &Vector3<f64>) -> [f64; 2] {
+        [direction.dot(&self.slope), direction.component_mul(&self.standard_uncertainty).norm()]
     }
 
     /// The slope that a speed does not explain which runs over the plateau by `relative_slope`, with a standard uncertainty [1/s];

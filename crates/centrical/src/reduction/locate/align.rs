@@ -23,15 +23,23 @@ const ROUNDS: usize = 8;
 /// Noise that is tried where plateaus are not found by that of a sample, in units of it: vibration at one speed, a speed that hunts.
 const LOUDER: [f64; 4] = [4.0, 16.0, 64.0, 256.0];
 
-/// The core of each scheduled plateau, in blocks; an error for a record with a recording mistake.
-pub(super) fn align(blocks: &Blocks, schedule: &[ScheduledPlateau]) -> Result<Vec<Range<usize>>, ReductionError> {
+/// A schedule found in a record.
+pub(super) struct Aligned {
+    /// The core of each scheduled plateau, in blocks.
+    pub cores: Vec<Range<usize>>,
+    /// Plateaus that the schedule does not have, from and to [s].
+    pub unscheduled: Vec<[f64; 2]>,
+}
+
+/// The core of each scheduled plateau, and what the schedule does not have; an error for a record with a recording mistake.
+pub(super) fn align(blocks: &Blocks, schedule: &[ScheduledPlateau]) -> Result<Aligned, ReductionError> {
     let quiet = Evidence::new(blocks);
     let other = |schedule: &[ScheduledPlateau]| first_path(&quiet, schedule.into()).ok().map(FirstPath::settled);
     match by_schedule(&quiet, schedule) {
         Ok(cores) => {
             hypothesis::recognise(blocks, schedule, Some(&cores), other)?;
             rotation::check(blocks, schedule, &cores)?;
-            Ok(cores)
+            Ok(Aligned { unscheduled: unscheduled(&quiet, schedule, &cores), cores })
         }
         Err(error) => {
             hypothesis::recognise(blocks, schedule, None, other)?;
@@ -76,16 +84,17 @@ fn shows_more(louder: &Evidence, quiet: &Evidence) -> bool {
 
 /// Spans [s] of steady stretches outside all cores that are under load and half as long as the shortest core or longer: plateaus that the
 /// schedule does not have.
-pub(super) fn unscheduled(blocks: &Blocks, schedule: &[ScheduledPlateau], cores: &[Range<usize>]) -> Vec<[f64; 2]> {
+fn unscheduled(quiet: &Evidence, schedule: &[ScheduledPlateau], cores: &[Range<usize>]) -> Vec<[f64; 2]> {
     /// Load of the slowest scheduled plateau from which on a stretch is not at rest.
     const UNDER_LOAD: f64 = 0.1;
+    let blocks = quiet.blocks();
     let seen = schedule.iter().zip(cores).map(|(plateau, core)| (plateau.omega, blocks.level(core)));
     let slowest = schedule.iter().map(|plateau| plateau.omega.powi(2)).filter(|square| *square > 0.0).reduce(f64::min);
     let (Some(line), Some(slowest)) = (Line::through(seen), slowest) else { return Vec::new() };
     let least = cores.iter().map(Range::len).min().unwrap_or(0).div_ceil(2);
     let is_outside = |range: &Range<usize>| cores.iter().all(|core| range.end <= core.start || core.end <= range.start);
     let is_under_load = |range: &Range<usize>| line.square(&blocks.level(range)) > UNDER_LOAD * slowest;
-    let stretches = Evidence::new(blocks).steady_stretches().into_iter();
+    let stretches = quiet.steady_stretches().into_iter();
     let found = stretches.filter(|range| range.len() >= least && is_outside(range) && is_under_load(range));
     found.map(|range| span(blocks, &range)).collect()
 }
