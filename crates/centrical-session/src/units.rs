@@ -26,12 +26,19 @@ struct Customary {
 }
 
 /// The customary units, the usual one of a group first.
-const CUSTOMARY: [Customary; 17] = [
+const CUSTOMARY: [Customary; 19] = [
     customary_unit("m/s^2", None, "mg", 1e-3 * STANDARD_GRAVITY),
     customary_unit("1", Some(Group::Misalignment), "urad", 1e-6),
     customary_unit("1", None, "ppm", 1e-6),
     customary_unit("rad", None, "urad", 1e-6),
+    customary_unit("m/s", Some(Group::Disturbance), "ug at 10 rev/s", MICRO_G / TOP_SPEED),
     customary_unit("m", Some(Group::Disturbance), "ug at 10 rev/s", MICRO_G / (TOP_SPEED * TOP_SPEED)),
+    customary_unit(
+        "m s^2",
+        Some(Group::Disturbance),
+        "ug at 10 rev/s",
+        MICRO_G / (TOP_SPEED * TOP_SPEED * TOP_SPEED * TOP_SPEED),
+    ),
     customary_unit("m", None, "um", 1e-6),
     customary_unit("s^2/m", Some(Group::ArmTurn), "urad/g", 1e-6 / STANDARD_GRAVITY),
     customary_unit("s^2", Some(Group::ArmTurn), "urad at 10 rev/s", 1e-6 / (TOP_SPEED * TOP_SPEED)),

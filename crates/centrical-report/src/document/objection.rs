@@ -1,6 +1,6 @@
 //! Objections and patterns as sentences.
 
-use centrical::uncertainty::Objection;
+use centrical::uncertainty::{Level, Objection};
 use centrical::{Extension, Rival};
 use centrical_session::{Follows, MICRO_G, PatternSummary, ResultObjection, RivalSummary};
 
@@ -57,14 +57,16 @@ fn left_out(rivals: &[RivalSummary], language: Language) -> String {
     let messages = language.messages();
     let Some((first, alike)) = rivals.split_first() else { return messages.left_out.to_owned() };
     let explained = language.fixed(first.chi_squared, 1);
+    let is_unexplained = first.probability_of_rest.is_some_and(|chance| Level::Objection.is_passed_by(chance));
     let text = format!(
-        "{}: {}, {} {explained} {}, {} {}",
+        "{}: {}, {} {explained} {}, {} {}{}",
         messages.left_out,
         rival(first, language),
         messages.explains,
         messages.of_chi_squared,
         messages.chance,
-        language.probability(first.probability)
+        language.probability(first.probability),
+        if is_unexplained { messages.unexplained_rest } else { "" }
     );
     if alike.is_empty() {
         return text;

@@ -12,11 +12,12 @@ pub fn unit_history_plots(report: &UnitHistoryReport, limits: &ParameterLimits) 
 fn unit_parameter(report: &UnitHistoryReport, p: &UnitParameter, limits: &ParameterLimits) -> Plot {
     let (factor, unit) = customary(&p.unit, p.group);
     let years = |date: centrical_session::Date| date.in_years();
-    let point = |((session, value), u): ((&centrical_session::PastSession, &f64), &f64)| {
+    let point = |((session, value), u): ((&centrical_session::PastSession, &Option<f64>), &Option<f64>)| {
+        let (value, u) = value.zip(*u)?;
         let ends = (factor * value - 2.0 * factor.abs() * u, factor * value + 2.0 * factor.abs() * u);
-        Point::new(years(session.date), factor * value).with_interval(ends.0, ends.1)
+        Some(Point::new(years(session.date), factor * value).with_interval(ends.0, ends.1))
     };
-    let points = report.sessions.iter().zip(&p.values).zip(&p.standard_uncertainties).map(point).collect();
+    let points = report.sessions.iter().zip(&p.values).zip(&p.standard_uncertainties).filter_map(point).collect();
     let mut plot = Plot::new(p.name.clone(), Axis::linear("year"), Axis::linear(format!("{}, {unit}", p.name)))
         .with(Series::markers("calibrations, k = 2", points));
     if let Some([low, high]) = p.forecast {

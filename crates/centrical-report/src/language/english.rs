@@ -311,6 +311,7 @@ pub(crate) const ENGLISH: Messages = Messages {
     left_out_alike: "the data cannot tell it from",
     explains: "explains",
     of_chi_squared: "of χ²",
+    unexplained_rest: "; the rest is still too large, so that no effect tested is the cause alone",
     in_mounting: "mounting",
     rivals_tested: "Effects left out, of those tested",
     rests_on: "What the result rests on",

@@ -171,8 +171,13 @@ pub(super) fn rival(rival: Rival) -> &'static str {
             Extension::Disturbance(Course::Spinning) => {
                 "step between rest and spinning: an aliased line or rectified vibration"
             }
+            Extension::ProofMasses => "places of proof masses that are taken as exact",
+            Extension::Disturbance(Course::Speed) => "disturbance with the speed: rectified vibration",
             Extension::Disturbance(Course::SquaredSpeed) => {
                 "disturbance with the square of the speed: rectified vibration"
+            }
+            Extension::Disturbance(Course::FourthPowerOfSpeed) => {
+                "disturbance with the fourth power of the speed: rectified vibration of an imbalance"
             }
             Extension::Disturbance(Course::Yield) => "proof mass that yields to its force",
             Extension::Disturbance(Course::Time) => "bias that changes over the session",

@@ -255,6 +255,7 @@ pub(crate) struct Messages {
     pub left_out_alike: &'static str,
     pub explains: &'static str,
     pub of_chi_squared: &'static str,
+    pub unexplained_rest: &'static str,
     pub in_mounting: &'static str,
     pub rivals_tested: &'static str,
     pub rests_on: &'static str,

@@ -308,6 +308,7 @@ pub(crate) const RUSSIAN: Messages = Messages {
     left_out_alike: "по данным неотличимо",
     explains: "объясняет",
     of_chi_squared: "от χ²",
+    unexplained_rest: "; остаток всё ещё слишком велик: ни один из проверенных эффектов не может быть единственной причиной",
     in_mounting: "установка",
     rivals_tested: "Неучтённые эффекты из числа проверенных",
     rests_on: "На чём держится результат",

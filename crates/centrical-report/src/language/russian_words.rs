@@ -169,7 +169,12 @@ pub(super) fn rival(rival: Rival) -> &'static str {
             Extension::Disturbance(Course::Spinning) => {
                 "ступень между покоем и вращением: наложение частот или выпрямленная вибрация"
             }
+            Extension::ProofMasses => "координаты чувствительных масс, принятые за точные",
+            Extension::Disturbance(Course::Speed) => "возмущение со скоростью: выпрямленная вибрация",
             Extension::Disturbance(Course::SquaredSpeed) => "возмущение с квадратом скорости: выпрямленная вибрация",
+            Extension::Disturbance(Course::FourthPowerOfSpeed) => {
+                "возмущение с четвёртой степенью скорости: выпрямленная вибрация дисбаланса"
+            }
             Extension::Disturbance(Course::Yield) => "чувствительная масса, податливая силе",
             Extension::Disturbance(Course::Time) => "изменение нуля за время эксперимента",
             Extension::Disturbance(Course::TimeScale) => "изменение масштаба за время эксперимента",

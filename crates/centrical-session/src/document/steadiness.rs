@@ -267,7 +267,9 @@ impl DriftSummary {
         let slopes = reduced.plateaus.iter().zip(&experiment.set_points).map(slope);
         let Some(slopes) = slopes.collect::<Option<Vec<Slope>>>() else { return Ok(None) };
         let drift = PlateauDrift::of(&slopes);
-        let beyond_speed = PlateauDrift::of(&beyond_speed(calibration, reduced, &slopes));
+        // Telemetry may repeat the set speed: what the stated uncertainty of the speed explains is no drift, whatever telemetry shows.
+        let by_telemetry = PlateauDrift::of(&beyond_speed(calibration, reduced, &slopes, true)).chi_squared;
+        let by_statement = PlateauDrift::of(&beyond_speed(calibration, reduced, &slopes, false)).chi_squared;
         let trends = calibration.drift_over_session()?;
         Ok(Some(Self {
             slope: drift.mean.slope.into(),
@@ -275,7 +277,7 @@ impl DriftSummary {
             chi_squared: drift.chi_squared,
             degrees_of_freedom: drift.degrees_of_freedom,
             probability: drift.probability,
-            beyond_speed: Some(beyond_speed.chi_squared),
+            beyond_speed: Some(by_telemetry.min(by_statement)),
             creep: creep(experiment, reduced, &slopes),
             over_session: trends.into_iter().map(SessionTrend::from).collect(),
             repeats: repeated(calibration, reduced),
@@ -303,8 +305,8 @@ fn creep(experiment: &Experiment, reduced: &Reduced, slopes: &[Slope]) -> Option
     Some(CreepSummary { rate, standard_uncertainty, probability })
 }
 
-/// The slopes of all plateaus, less what their speeds explain.
-fn beyond_speed(calibration: &Calibration, reduced: &Reduced, slopes: &[Slope]) -> Vec<Slope> {
+/// The slopes of all plateaus, less what their speeds explain as they are stated, and as telemetry shows them where it `counts`.
+fn beyond_speed(calibration: &Calibration, reduced: &Reduced, slopes: &[Slope], counts: bool) -> Vec<Slope> {
     let model = calibration.data().model();
     let experiment = model.experiment();
     let beyond = |(n, slope): (usize, &Slope)| {
@@ -312,7 +314,8 @@ fn beyond_speed(calibration: &Calibration, reduced: &Reduced, slopes: &[Slope]) 
         let own = experiment.speed_uncertainty_of(set_point);
         let Some([from, to]) = reduced.plateaus[n].window.filter(|_| own > 0.0) else { return *slope };
         let by_log_speed = model.linearise(set_point, calibration.fit().state()).setting_error / own;
-        let measured = reduced.speeds.get(n).copied().flatten().and_then(|speed| speed.slope);
+        let speed = reduced.speeds.get(n).copied().flatten().filter(|_| counts);
+        let measured = speed.and_then(|speed| speed.slope);
         slope.beyond_speed(&by_log_speed, slope_of_speed(experiment.centrifuge.speed_uncertainty, to - from, measured))
     };
     slopes.iter().enumerate().map(beyond).collect()

@@ -162,8 +162,12 @@ fn growth(unknown: &Parameter) -> Option<(Dimension, Dimension, i32)> {
         Effect::Monomial { monomial, .. } if monomial.degree() > 0 => {
             Some((Dimension::Acceleration, Dimension::Acceleration, i32::from(monomial.degree())))
         }
+        Effect::Disturbance { follows: Course::Speed, .. } => Some((Dimension::Acceleration, Dimension::Speed, 1)),
         Effect::Disturbance { follows: Course::SquaredSpeed, .. } => {
             Some((Dimension::Acceleration, Dimension::Speed, 2))
+        }
+        Effect::Disturbance { follows: Course::FourthPowerOfSpeed, .. } => {
+            Some((Dimension::Acceleration, Dimension::Speed, 4))
         }
         Effect::Disturbance { follows: Course::Yield, .. } => Some((Dimension::Length, Dimension::Acceleration, 1)),
         _ => None,

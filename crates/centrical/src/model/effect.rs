@@ -155,8 +155,12 @@ pub enum Scope {
 pub enum Course {
     /// 1 while the centrifuge spins: an aliased line, rectified vibration of the drive.
     Spinning,
+    /// `|Omega|` [rad/s]: rectified vibration of an imbalance below its resonance, or of bearings.
+    Speed,
     /// `Omega^2` [rad^2/s^2]: rectified vibration that grows with the speed.
     SquaredSpeed,
+    /// `Omega^4` [rad^4/s^4]: rectified vibration of an imbalance, whose force is one with `Omega^2`.
+    FourthPowerOfSpeed,
     /// `-M_ii f_i`: a proof mass that yields to its force, in open loop or a soft loop.
     Yield,
     /// The order of the plateaus in the session, -1/2 to 1/2.
@@ -176,7 +180,7 @@ impl Course {
     fn is_of_history(self) -> bool {
         match self {
             Self::Time | Self::TimeScale | Self::Rise | Self::Memory | Self::Turn => true,
-            Self::Spinning | Self::SquaredSpeed | Self::Yield => false,
+            Self::Spinning | Self::Speed | Self::SquaredSpeed | Self::FourthPowerOfSpeed | Self::Yield => false,
         }
     }
 }

@@ -55,6 +55,8 @@ pub enum Extension {
     RestsTilt,
     /// Turn of the unit while spinning against that at rest, three per position.
     SpinTurn,
+    /// Coordinates of the proof masses that are taken as exact ([`Unit::is_coordinate_taken_as_exact`]).
+    ProofMasses,
     /// A disturbance of the readings, one per newtonometer.
     Disturbance(Course),
     /// One mounting, by its index, that differs from the others.
@@ -76,7 +78,7 @@ pub enum Difference {
 
 impl Extension {
     /// Every extension with its name as written in sessions and plans.
-    pub const NAMED: [(&'static str, Self); 32] = [
+    pub const NAMED: [(&'static str, Self); 35] = [
         ("elastic-turn-speed", Self::ElasticTurn(Law::Speed)),
         ("elastic-turn-load", Self::ElasticTurn(Law::Load)),
         ("arm-stretch-speed", Self::ArmStretch(Law::Speed)),
@@ -101,8 +103,11 @@ impl Extension {
         ("rests-unit", Self::RestsUnit),
         ("rests-tilt", Self::RestsTilt),
         ("spin-turn", Self::SpinTurn),
+        ("proof-masses", Self::ProofMasses),
         ("spin-step", Self::Disturbance(Course::Spinning)),
+        ("spin-speed", Self::Disturbance(Course::Speed)),
         ("spin-square", Self::Disturbance(Course::SquaredSpeed)),
+        ("spin-fourth", Self::Disturbance(Course::FourthPowerOfSpeed)),
         ("yield", Self::Disturbance(Course::Yield)),
         ("bias-drift", Self::Disturbance(Course::Time)),
         ("scale-drift", Self::Disturbance(Course::TimeScale)),
@@ -197,6 +202,7 @@ impl Extension {
                 let name = format!("spin_turn_{}[{id}]", axis + 1);
                 effect(name, "rad", Group::SpinTurn, Effect::SpinTurn { axis, position }, 1e-3)
             }),
+            Self::ProofMasses => coordinates(experiment),
             Self::Disturbance(course) => three(|axis| disturbance(axis, course)),
             Self::OneSpeed(speed) => {
                 let first = experiment.set_speeds().get(speed).map(|(first, _)| *first);
@@ -279,7 +285,9 @@ const BIAS: f64 = 5e-3 * STANDARD_GRAVITY;
 fn disturbance(axis: usize, follows: Course) -> Parameter {
     let (stem, unit, typical) = match follows {
         Course::Spinning => ("spin_step", "m/s^2", BIAS),
+        Course::Speed => ("spin_speed", "m/s", BIAS / Law::Speed.full_scale().sqrt()),
         Course::SquaredSpeed => ("spin_square", "m", BIAS / Law::Speed.full_scale()),
+        Course::FourthPowerOfSpeed => ("spin_fourth", "m s^2", BIAS / Law::Speed.full_scale().powi(2)),
         Course::Yield => ("yield", "s^2", 5e-4 / Law::Load.full_scale()),
         Course::Time => ("bias_drift", "m/s^2", BIAS),
         Course::TimeScale => ("scale_drift", "1", 1e-3),
@@ -289,6 +297,20 @@ fn disturbance(axis: usize, follows: Course) -> Parameter {
     };
     let name = format!("{stem}_{}", axis + 1);
     effect(name, unit, Group::Disturbance, Effect::Disturbance { axis, follows }, typical)
+}
+
+/// The coordinates of proof masses that are taken as exact [m].
+fn coordinates(experiment: &Experiment) -> Vec<Parameter> {
+    if !experiment.has_arm() {
+        return Vec::new();
+    }
+    let all = (0..3).flat_map(|mass| (0..3).map(move |coordinate| (coordinate, mass)));
+    let exact = all.filter(|&(coordinate, mass)| experiment.unit.is_coordinate_taken_as_exact(coordinate, mass));
+    let unknown = |(coordinate, mass): (usize, usize)| {
+        let name = format!("proof_mass_{}{}", coordinate + 1, mass + 1);
+        effect(name, "m", Group::ProofMass, Effect::Coordinate { coordinate, mass }, 5e-4)
+    };
+    exact.map(unknown).collect()
 }
 
 /// An unknown for each instrument axis and position.

@@ -108,7 +108,10 @@ impl Rival {
                 Extension::RestsUnit => "f_j, by switch-on of rests",
                 Extension::RestsTilt => "theta, by rest",
                 Extension::SpinTurn => "delta while spinning, by position",
+                Extension::ProofMasses => "d f / d rho_ji, those taken as exact",
                 Extension::Disturbance(Course::Spinning) => "1 where Omega > 0",
+                Extension::Disturbance(Course::Speed) => "|Omega|",
+                Extension::Disturbance(Course::FourthPowerOfSpeed) => "Omega^4",
                 Extension::Disturbance(Course::SquaredSpeed) => "Omega^2",
                 Extension::Disturbance(Course::Yield) => "-M_ii f_i",
                 Extension::Disturbance(Course::Time) => "t",
@@ -148,6 +151,7 @@ impl Rival {
                 | Extension::RestsTilt
                 | Extension::SpinTurn
                 | Extension::OneMounting(..) => "mechanics of the arm and the seat",
+                Extension::ProofMasses => "the source's section 3",
                 Extension::Disturbance(Course::Yield) => "IEEE Std 1293, open loop",
                 Extension::MountingBias
                 | Extension::MountingScale

@@ -102,7 +102,9 @@ impl MeasurementModel {
         let f0 = || nominal(&self.experiment, set_point)[axis];
         match course {
             Course::Spinning => f64::from(u8::from(!set_point.is_rest())),
-            Course::SquaredSpeed => set_point.omega * set_point.omega,
+            Course::Speed => set_point.omega.abs(),
+            Course::SquaredSpeed => set_point.omega.powi(2),
+            Course::FourthPowerOfSpeed => set_point.omega.powi(4),
             Course::Yield => -Nominal::of(&self.experiment, set_point).m[(axis, axis)] * f0(),
             Course::Time => history.time,
             Course::TimeScale => history.time * f0(),

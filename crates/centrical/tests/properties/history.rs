@@ -148,7 +148,7 @@ fn a_move_to_another_station_is_no_scatter() {
             };
             let sessions: Vec<SessionEstimates> = points.iter().map(session).collect();
             let changes: Vec<DMatrix<f64>> = (0..6).map(|i| shared.rows(i, 1).into_owned()).collect();
-            let test = sameness(&sessions, &changes).unwrap();
+            let test = sameness(&sessions, &vec![vec![0]; 6], &changes).unwrap();
             assert!((test.chi_squared / found.misfit - 1.0).abs() < 1e-9, "{} {}", test.chi_squared, found.misfit);
             differ += u32::from(test.probability < 0.05);
         }
@@ -237,7 +237,7 @@ fn what_sessions_share_cancels_in_differences() {
             covariance: covariance.clone(),
         };
         let mut sessions = [session(), session(), session()];
-        let test = sameness(&sessions, &[]).unwrap();
+        let test = sameness(&sessions, &each_of(5, sessions.len()), &[]).unwrap();
         assert_eq!(test.degrees_of_freedom, 10);
         sum += test.chi_squared;
         small += i32::from(test.probability < 0.05);
@@ -245,9 +245,9 @@ fn what_sessions_share_cancels_in_differences() {
         // One that is 12 standard deviations off is named, and chi^2 without it is that of the two others.
         let odd = run % 3;
         sessions[odd].values += 12.0 * factor.column(2);
-        let farthest = sameness(&sessions, &[]).unwrap().farthest.unwrap();
+        let farthest = sameness(&sessions, &each_of(5, sessions.len()), &[]).unwrap().farthest.unwrap();
         let others = [(odd + 1) % 3, (odd + 2) % 3].map(|n| sessions[n].clone());
-        let alone = sameness(&others, &[]).unwrap();
+        let alone = sameness(&others, &each_of(5, 2), &[]).unwrap();
         assert_eq!(farthest.session, odd);
         assert!((farthest.probability_of_others / alone.probability - 1.0).abs() < 1e-6);
         assert_eq!(alone.farthest, None);
@@ -261,13 +261,53 @@ fn what_sessions_share_cancels_in_differences() {
                 covariance: covariance.clone(),
             })
             .collect();
-        let farthest = sameness(&sessions, &[]).unwrap().farthest.unwrap();
+        let farthest = sameness(&sessions, &each_of(5, sessions.len()), &[]).unwrap().farthest.unwrap();
         too_far += i32::from(farthest.probability_by_scatter < 0.05);
     }
     assert!((1..41).contains(&too_far), "{too_far}");
     // Four standard deviations.
     assert!((sum / 500.0 - 10.0).abs() < 0.8 && (5..46).contains(&small), "{sum} {small}");
     assert!((5..46).contains(&far), "{far}");
+}
+
+/// All of `p` quantities in each session.
+fn each_of(p: usize, sessions: usize) -> Vec<Vec<usize>> {
+    vec![(0..p).collect(); sessions]
+}
+
+/// Sessions that lack some of the quantities are tested by the others: chi^2 has its law, a change in what a session lacks is seen by those that
+/// have it, and sessions that all have everything are tested as before.
+#[test]
+fn sessions_need_not_have_all_quantities() {
+    let mut random = Random::new(6);
+    let factor = DMatrix::from_fn(5, 5, |_, _| random.normal());
+    let covariance = &factor * factor.transpose();
+    let has = [vec![0, 1, 2, 3, 4], vec![0, 3], vec![0, 1, 2, 3, 4], vec![4, 1], vec![0, 1, 2, 3, 4]];
+    let (mut sum, mut small) = (0.0, 0);
+    for run in 0..500 {
+        let mut of = |changed: f64| -> Vec<SessionEstimates> {
+            let session = |(n, has): (usize, &Vec<usize>)| {
+                let drawn = &factor * DVector::from_fn(5, |_, _| random.normal());
+                let value = |j: usize| drawn[j] + if j == 2 && n == 4 { changed } else { 0.0 };
+                SessionEstimates {
+                    values: DVector::from_fn(has.len(), |i, _| value(has[i])),
+                    covariance: DMatrix::from_fn(has.len(), has.len(), |i, k| covariance[(has[i], has[k])]),
+                }
+            };
+            has.iter().enumerate().map(session).collect()
+        };
+        let test = sameness(&of(0.0), &has, &[]).unwrap();
+        assert_eq!(test.degrees_of_freedom, 14);
+        sum += test.chi_squared;
+        small += i32::from(test.probability < 0.05);
+        let changed = sameness(&of(20.0 * covariance[(2, 2)].sqrt()), &has, &[]).unwrap();
+        assert!(changed.probability < 1e-6, "{run}: {changed:?}");
+        let farthest = changed.farthest.unwrap();
+        assert_eq!(farthest.session, 4);
+        assert!(farthest.probability < 1e-6 && farthest.probability_of_others > 1e-6);
+    }
+    // Four standard deviations.
+    assert!((sum / 500.0 - 14.0).abs() < 0.95 && (5..46).contains(&small), "{sum} {small}");
 }
 
 /// Correlated parameters of `units` units.

@@ -67,6 +67,11 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let same_model = |unit: &Vec<Calibrated>| unit.first().is_some_and(|c| c.unit_model == calibrations[0].unit_model);
     let others: Vec<_> = others.into_iter().filter(same_model).collect();
     choice.remark_alike();
+    let last = calibrations.last();
+    if let Some((on, last)) = arguments.on.zip(last).filter(|(on, last)| *on < last.date) {
+        return Err(choice
+            .refuse(format!("--on {on}"), &format!("{}, the day of the last calibration, or a later one", last.date)));
+    }
     let request = UnitHistoryRequest {
         trend: !arguments.without_trend,
         until: arguments.until,

@@ -24,7 +24,7 @@ pub fn unit_history_text(report: &UnitHistoryReport) -> Screen {
     );
     for (n, session) in sessions.iter().enumerate() {
         let verdict = if session.acceptable { "" } else { "NOT ACCEPTABLE" };
-        let date = session.date.to_string();
+        let date = session.stamp.clone().unwrap_or_else(|| session.date.to_string());
         table.row([
             (n + 1).to_string().into(),
             date.into(),
@@ -85,6 +85,17 @@ fn verdict(screen: &mut Screen, report: &UnitHistoryReport) {
         let words = "the last calibration has an objection, and all that stands here takes it as it is";
         screen.marked(Emphasis::NotAcceptable, "NOT ACCEPTABLE", words);
     }
+    if report.ahead {
+        let words = format!(
+            "the last calibration is of {}, later than today: a wrong clock, or day and month exchanged; all that stands here takes it as it is",
+            report.sessions.last().map_or(report.on, |last| last.date)
+        );
+        screen.marked(Emphasis::NotAcceptable, "AHEAD", &words);
+    }
+    for LeftOutSession { session, lacks } in &report.incomplete {
+        let words = format!("{}, {}: it does not determine {}", session.date, session.source, short_list(lacks));
+        screen.marked(Emphasis::Warning, "INCOMPLETE", &words);
+    }
     for session in &report.left_out {
         screen.marked(Emphasis::Warning, "INCOMPLETE", &left_out(session));
     }
@@ -99,6 +110,17 @@ fn verdict(screen: &mut Screen, report: &UnitHistoryReport) {
         );
         screen.marked(Emphasis::Warning, "NOT IN LAST", &words);
     }
+    sameness(screen, report);
+    twice(screen, report);
+    if report.sessions.len() < 3 {
+        screen.marked(Emphasis::Warning, "FEW", "two calibrations show no trend beside the scatter between sessions");
+    } else if report.is_unexplained() {
+        screen.marked(Emphasis::Warning, "FEW", "the calibrations are too few to tell a drift from scatter");
+    }
+}
+
+/// All parameters of all sessions together, and the session that deviates.
+fn sameness(screen: &mut Screen, report: &UnitHistoryReport) {
     if let Some(test) = &report.sameness {
         let words = format!(
             "chi^2 = {:.1} with {} degrees of freedom; as large by the stated uncertainties alone with a probability of {}",
@@ -106,9 +128,15 @@ fn verdict(screen: &mut Screen, report: &UnitHistoryReport) {
             test.degrees_of_freedom,
             chance(test.probability)
         );
-        let (emphasis, mark) =
-            if report.differs() { (Emphasis::Warning, "DIFFERS") } else { (Emphasis::Acceptable, "THE SAME") };
-        screen.marked(emphasis, mark, &words);
+        let (emphasis, mark) = if report.differs() {
+            (Emphasis::Warning, "DIFFERS")
+        } else if report.agrees_too_well() {
+            (Emphasis::Warning, "TOO ALIKE")
+        } else {
+            (Emphasis::Acceptable, "THE SAME")
+        };
+        let why = "; the calibrations agree better than independent ones do: results of the same records, or uncertainties that are too large";
+        screen.marked(emphasis, mark, &if mark == "TOO ALIKE" { words + why } else { words });
     }
     if let Some(session) = report.deviating() {
         let words = format!(
@@ -122,6 +150,10 @@ fn verdict(screen: &mut Screen, report: &UnitHistoryReport) {
         );
         screen.marked(Emphasis::Warning, "DEVIATES", &words);
     }
+}
+
+/// Sessions that may be one.
+fn twice(screen: &mut Screen, report: &UnitHistoryReport) {
     for [one, other] in report.twice() {
         let words = format!(
             "{}, {} and {}, {} have the same values to the last digit, and count as two sessions",
@@ -129,10 +161,12 @@ fn verdict(screen: &mut Screen, report: &UnitHistoryReport) {
         );
         screen.marked(Emphasis::Warning, "TWICE", &words);
     }
-    if report.sessions.len() < 3 {
-        screen.marked(Emphasis::Warning, "FEW", "two calibrations show no trend beside the scatter between sessions");
-    } else if report.is_unexplained() {
-        screen.marked(Emphasis::Warning, "FEW", "the calibrations are too few to tell a drift from scatter");
+    for [one, other] in report.same_days() {
+        let words = format!(
+            "{}: {} and {} count as two sessions in this order, by the times of their dates and then by their names",
+            one.date, one.source, other.source
+        );
+        screen.marked(Emphasis::Warning, "SAME DAY", &words);
     }
 }
 
@@ -209,7 +243,7 @@ fn parameters(screen: &mut Screen, report: &UnitHistoryReport) {
 fn parameter(p: &UnitParameter) -> [Cell; 11] {
     let (factor, unit) = customary(&p.unit, p.group);
     let estimate = |value: f64, u: f64| Cell::estimate(with_uncertainty(factor * value, factor.abs() * u));
-    let last = p.values.last().zip(p.standard_uncertainties.last());
+    let last = p.values.iter().zip(&p.standard_uncertainties).rev().find_map(|(value, u)| value.zip(*u));
     let shown = |value: f64| two_digits(factor.abs() * value);
     let between = p.between.map_or_else(String::new, shown);
     let slope = p.slope_per_year.zip(p.slope_uncertainty);
@@ -223,7 +257,7 @@ fn parameter(p: &UnitParameter) -> [Cell; 11] {
     [
         p.name.as_str().into(),
         unit.into(),
-        last.map_or_else(Cell::default, |(value, u)| estimate(*value, *u)),
+        last.map_or_else(Cell::default, |(value, u)| estimate(value, u)),
         between.into(),
         p.between_interval.map_or_else(String::new, |ends| interval(ends, shown)).into(),
         p.variance_ratio.map_or_else(String::new, |f| format!("{f:.1}")).into(),

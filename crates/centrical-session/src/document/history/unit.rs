@@ -25,11 +25,14 @@ pub struct PastSession {
     pub station: String,
     /// Day.
     pub date: Date,
+    /// The same as the session states it, where that says more than the day.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub stamp: Option<String>,
     /// Whether no check raised an objection.
     pub acceptable: bool,
 }
 
-/// A calibration that is left out of a history.
+/// A calibration that lacks parameters of others.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct LeftOutSession {
     /// The calibration.
@@ -52,7 +55,10 @@ pub struct UnitHistoryReport {
     pub unit_serial: String,
     /// Its calibrations that are compared, in the order of time.
     pub sessions: Vec<PastSession>,
-    /// Those that do not determine the same parameters.
+    /// Those among them that do not determine all parameters: the others are compared.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub incomplete: Vec<LeftOutSession>,
+    /// Those that determine no parameter that another one does.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub left_out: Vec<LeftOutSession>,
     /// Parameters of the last calibration that the others do not determine.
@@ -71,7 +77,7 @@ pub struct UnitHistoryReport {
     pub until: Date,
     /// All parameters together.
     pub sameness: Option<SamenessSummary>,
-    /// The parameters that all calibrations compared determine.
+    /// The parameters that two calibrations or more determine.
     pub parameters: Vec<UnitParameter>,
     /// Largest specific force of the readings below [m/s^2].
     pub range: f64,
@@ -79,6 +85,9 @@ pub struct UnitHistoryReport {
     pub limit: Option<f64>,
     /// The day that the next is of: that of the last calibration or a later one.
     pub on: Date,
+    /// Whether that is later than today: a wrong clock, or day and month exchanged.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub ahead: bool,
     /// Whether a reading compensated by the last calibration is within the limit after a switch-on that day; null without a limit, and where
     /// some readings are not determined and none is beyond.
     pub is_within: Option<bool>,
@@ -86,7 +95,7 @@ pub struct UnitHistoryReport {
     pub due: Option<DueDate>,
     /// The day at which the search for a due date ended; null where some readings are not determined.
     pub due_after: Option<Date>,
-    /// Compensated readings, those that the calibrations compared determine.
+    /// Compensated readings, those that two calibrations or more determine.
     pub readings: Vec<ReadingHistory>,
 }
 
@@ -128,10 +137,10 @@ pub struct UnitParameter {
     /// bias, scale, misalignment, ...
     #[serde(serialize_with = "crate::document::words::serialize")]
     pub group: Group,
-    /// Value in each session.
-    pub values: Vec<f64>,
+    /// Value in each session; null where the session does not determine it.
+    pub values: Vec<Option<f64>>,
     /// Combined standard uncertainty in each session.
-    pub standard_uncertainties: Vec<f64>,
+    pub standard_uncertainties: Vec<Option<f64>>,
     /// Standard deviation between sessions beside the stated uncertainties; null where the sessions do not determine it.
     pub between: Option<f64>,
     /// Its interval.
@@ -156,7 +165,7 @@ pub struct UnitParameter {
     pub drifts: bool,
     /// Interval of the true value after a switch-on on the day of the forecasts.
     pub forecast: Option<[f64; 2]>,
-    /// Last less previous calibration over the expanded uncertainty (k = 2), without what both share.
+    /// Last less previous calibration that determines it over the expanded uncertainty (k = 2), without what both share.
     pub e_n_previous: f64,
     /// The same against the first.
     pub e_n_first: f64,
@@ -196,6 +205,9 @@ pub struct DueDate {
     pub force: [f64; 3],
 }
 
+/// Probability of so small a chi^2 below which sessions are not independent, or state too much.
+const TOO_WELL: f64 = 1e-4;
+
 impl UnitHistoryReport {
     /// The text of the document.
     ///
@@ -219,6 +231,11 @@ impl UnitHistoryReport {
         is_alone.then_some(farthest)
     }
 
+    /// Whether the calibrations agree better than what they state allows.
+    pub fn agrees_too_well(&self) -> bool {
+        self.sameness.as_ref().is_some_and(|test| 1.0 - test.probability < TOO_WELL)
+    }
+
     /// Pairs of sessions with the same values to the last digit: one session that counts twice.
     pub fn twice(&self) -> Vec<[&PastSession; 2]> {
         let values = |n: usize| self.parameters.iter().map(move |p| p.values.get(n));
@@ -237,9 +254,16 @@ impl UnitHistoryReport {
         shown_readings(&self.readings).into_iter().map(|n| &self.readings[n]).collect()
     }
 
-    /// Whether a reading is within its limit, where one was given, and the calibration that compensates it has no objection.
+    /// Whether every reading is shown to be within its limit, where one was given, and the calibration that compensates it has no objection and
+    /// no date to come.
     pub fn is_acceptable(&self) -> bool {
-        self.is_within != Some(false) && self.has_acceptable_last()
+        (self.limit.is_none() || self.is_within == Some(true)) && self.has_acceptable_last() && !self.ahead
+    }
+
+    /// Pairs of sessions of one day, one after the other.
+    pub fn same_days(&self) -> Vec<[&PastSession; 2]> {
+        let pairs = self.sessions.windows(2).filter(|pair| pair[0].date == pair[1].date);
+        pairs.map(|pair| [&pair[0], &pair[1]]).collect()
     }
 
     /// Whether the last calibration, which compensates, has no objection.

@@ -22,6 +22,9 @@ pub struct RivalSummary {
     pub degrees_of_freedom: usize,
     /// Probability of so large a part by chance among all rivals tested.
     pub probability: f64,
+    /// Probability of as large a chi^2 as it leaves by the stated uncertainties; null in results of older programs.
+    #[serde(default)]
+    pub probability_of_rest: Option<f64>,
     /// Whether it explains most for its number of unknowns, or the data cannot tell it from the one that does.
     pub explains_most: bool,
     /// Sizes of its unknowns, where the residuals tell them from the unknowns of the fit.
@@ -91,6 +94,7 @@ impl RivalSummary {
             chi_squared: test.statistic,
             degrees_of_freedom: test.degrees_of_freedom,
             probability: test.family_wise,
+            probability_of_rest: Some(test.probability_of_rest),
             explains_most,
             unknowns: unknowns.collect(),
         }

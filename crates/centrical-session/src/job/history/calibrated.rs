@@ -34,6 +34,8 @@ pub struct Calibrated {
     pub station: String,
     /// Day of the session.
     pub date: Date,
+    /// The same as its session states it, with the time if there is one.
+    pub stamp: String,
     /// Whether no check raised an objection.
     pub acceptable: bool,
     /// The raw output that its coefficients are relative to, if it is raw.
@@ -52,7 +54,7 @@ pub struct Calibrated {
     errors: Option<OwnErrors>,
     /// What the data alone say, if parameters of the unit had priors.
     of_data: Option<OfData>,
-    /// The error model with the names of its coefficients, if all of them are determined and covariances were read.
+    /// The error model with the names of its coefficients, if covariances were read; NaN where a coefficient is not determined.
     pub terms: Option<Vec<(String, Term)>>,
     /// Largest magnitude of a specific force on any axis [m/s^2].
     pub range: f64,
@@ -97,7 +99,7 @@ impl Calibrated {
             let place = row.index(&term.name)?;
             let summary =
                 TermSummary { name: term.name.clone(), axis: term.axis, powers: term.powers, sign_of: term.sign_of };
-            summary.with_coefficient(*row.values.get(place).filter(|value| value.is_finite())?).ok()
+            summary.with_coefficient(*row.values.get(place)?).ok()
         });
         let of_data = OfData::of(&row);
         Self {
@@ -111,6 +113,7 @@ impl Calibrated {
             // A text for each coefficient: for the values of 100,000 calibrations it would be most of the memory.
             terms: if row.covariance.is_empty() { None } else { terms.collect() },
             range: row.range.iter().copied().fold(0.0, f64::max),
+            stamp: row.date,
             unit_model: row.unit_model,
             unit_serial: row.unit_serial,
             station: row.station,
@@ -171,6 +174,7 @@ impl Calibrated {
             unit_serial: self.unit_serial.clone(),
             station: self.station.clone(),
             date: self.date,
+            stamp: Some(self.stamp.clone()).filter(|stamp| *stamp != self.date.to_string()),
             acceptable: self.acceptable,
         }
     }

@@ -30,7 +30,8 @@ pub fn history_up_to(file: &Path, result: &CalibrationResult, paths: &[PathBuf])
     let all = read_calibrations(&files, &selection, &unwatched)?;
     let (this, others): (Vec<Calibrated>, Vec<Calibrated>) =
         all.calibrations.into_iter().partition(|c| c.source == source);
-    let is_earlier = |other: &Calibrated| this.first().is_some_and(|this| other.date <= this.date);
+    let is_earlier =
+        |other: &Calibrated| this.first().is_some_and(|this| (other.date, &other.stamp) <= (this.date, &this.stamp));
     let calibrations: Vec<Calibrated> = others.into_iter().filter(is_earlier).chain(this.iter().cloned()).collect();
     unit_history(&calibrations, &[], UnitHistoryRequest::default()).ok_or_else(|| {
         let place = paths.first().map_or(file, PathBuf::as_path);

@@ -38,7 +38,8 @@ pub fn read_calibrations(paths: &[PathBuf], selection: &Selection, progress: OnP
     }
     let Past { mut calibrations, undated } = found.past;
     calibrations.sort_by(|a, b| {
-        a.date.cmp(&b.date).then_with(|| a.unit().cmp(&b.unit())).then_with(|| a.source.cmp(&b.source))
+        let by_time = a.date.cmp(&b.date).then_with(|| a.unit().cmp(&b.unit())).then_with(|| a.stamp.cmp(&b.stamp));
+        by_time.then_with(|| a.source.cmp(&b.source))
     });
     refuse_other_outputs(&calibrations)?;
     restate(&mut calibrations);

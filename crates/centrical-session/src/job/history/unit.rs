@@ -8,7 +8,7 @@ use centrical_compensate::Term;
 use nalgebra::{DMatrix, Vector3};
 
 use super::calibrated::{Basis, Calibrated, Finder, series, shared_changes, single, years};
-use super::comparable::Compared;
+use super::comparable::ComparedSessions;
 use crate::document::{
     DeviatingSession, DueDate, Program, ReadingHistory, SamenessSummary, UNIT_HISTORY_SCHEMA, UnitHistoryReport,
     UnitParameter, shown_readings,
@@ -58,14 +58,15 @@ pub fn unit_history(
     others: &[Vec<Calibrated>],
     request: UnitHistoryRequest,
 ) -> Option<UnitHistoryReport> {
-    let all: Vec<&Calibrated> = calibrations.iter().collect();
-    let last = *all.last()?;
-    let Compared { calibrations: own, left_out } = Compared::of(&all, Some(last));
-    let names = common_names(&own);
-    if own.len() < 2 || names.is_empty() {
+    let last = calibrations.last()?;
+    let ComparedSessions { calibrations: own, names, incomplete, left_out } = ComparedSessions::of(calibrations);
+    let is_last_compared = own.last().is_some_and(|compared| std::ptr::eq(*compared, last));
+    if own.len() < 2 || !is_last_compared {
         return None;
     }
-    let (zero, trend) = (own[0].date, request.trend && own.len() > 2);
+    // One day has no line in time, whatever the number of its sessions.
+    let has_days = own.iter().any(|calibrated| calibrated.date != own[0].date);
+    let (zero, trend) = (own[0].date, request.trend && own.len() > 2 && has_days);
     let until = request.until.unwrap_or(last.date.after(DAYS_IN_YEAR));
     let on = request.on.map_or(last.date, |on| on.max(last.date));
     let job = Job {
@@ -97,6 +98,7 @@ pub fn unit_history(
         unit_model: last.unit_model.clone(),
         unit_serial: last.unit_serial.clone(),
         sessions: own.iter().map(|calibrated| calibrated.past()).collect(),
+        incomplete,
         left_out,
         not_in_last: not_in(last, &own),
         not_compared: last.determined().map(str::to_owned).filter(|name| !names.contains(name)).collect(),
@@ -113,6 +115,7 @@ pub fn unit_history(
             .filter(|_| are_all || due.is_some())
             .map(|_| due.as_ref().is_none_or(|due| due.date > on)),
         on,
+        ahead: last.date > Date::today(),
         due,
         due_after: request.limit.filter(|_| are_all).map(|_| last.date.after(HORIZON * DAYS_IN_YEAR)),
         readings,
@@ -133,9 +136,16 @@ fn not_in(last: &Calibrated, calibrations: &[&Calibrated]) -> Vec<String> {
     names
 }
 
-/// Whether `last` has each term of a calibration.
+/// Whether `last` determines each term that a calibration does.
 fn is_part(calibrated: &Calibrated, last: &Calibrated) -> bool {
-    calibrated.terms.iter().flatten().all(|(name, _)| last.place(name).is_some())
+    let determined = calibrated.terms.iter().flatten().filter(|(name, _)| calibrated.place(name).is_some());
+    { determined }.all(|(name, _)| last.place(name).is_some())
+}
+
+/// Those of `calibrations` that determine all of a combination.
+fn with_all<'a>(calibrations: &[&'a Calibrated], combination: &[(String, f64)]) -> Vec<&'a Calibrated> {
+    let has_all = |calibrated: &&&Calibrated| combination.iter().all(|(name, _)| calibrated.place(name).is_some());
+    calibrations.iter().filter(has_all).copied().collect()
 }
 
 /// Parameters of the unit that all calibrations determine.
@@ -170,20 +180,28 @@ impl Job<'_> {
     fn sameness(&self, names: &[String]) -> Option<SamenessSummary> {
         let of_data = names.iter().filter(|name| !self.rests_on_priors(name)).cloned();
         let names: Vec<String> = of_data.collect();
-        let estimates = |calibrated: &&Calibrated| {
-            let (values, covariance) = calibrated.own_estimates(&names)?;
-            Some(SessionEstimates { values, covariance })
-        };
-        let sessions: Vec<SessionEstimates> = self.own.iter().map(estimates).collect::<Option<_>>()?;
         // What all sessions share cancels; what some share does not, as after a move to another station.
-        let shared = shared_changes(self.own, &names, |count| count < self.own.len());
-        sameness(&sessions, &shared).map(|test| SamenessSummary {
+        let changes = shared_changes(self.own, &names, |count| count < self.own.len());
+        let (mut own, mut sessions, mut quantities, mut shared) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        for (calibrated, changes) in self.own.iter().zip(&changes) {
+            let has: Vec<usize> = (0..names.len()).filter(|&i| calibrated.place(&names[i]).is_some()).collect();
+            if has.is_empty() {
+                continue;
+            }
+            let of_session: Vec<String> = has.iter().map(|&i| names[i].clone()).collect();
+            let (values, covariance) = calibrated.own_estimates(&of_session)?;
+            own.push(*calibrated);
+            sessions.push(SessionEstimates { values, covariance });
+            shared.push(changes.select_rows(&has));
+            quantities.push(has);
+        }
+        sameness(&sessions, &quantities, &shared).map(|test| SamenessSummary {
             chi_squared: test.chi_squared,
             degrees_of_freedom: test.degrees_of_freedom,
             probability: test.probability,
             farthest: test.farthest.map(|farthest| DeviatingSession {
-                source: self.own[farthest.session].source.clone(),
-                date: self.own[farthest.session].date,
+                source: own[farthest.session].source.clone(),
+                date: own[farthest.session].date,
                 probability: farthest.probability,
                 probability_of_others: farthest.probability_of_others,
                 probability_by_scatter: farthest.probability_by_scatter,
@@ -191,10 +209,15 @@ impl Job<'_> {
         })
     }
 
-    /// The series of a combination, this unit's first; with those of the other units, if the component is that of all.
+    /// The series of a combination over the sessions that determine it, this unit's first; with those of the other units, if the component is
+    /// that of all. `None` below two sessions.
     fn combination(&self, combination: &[(String, f64)], basis: Basis) -> Option<Vec<Series>> {
-        let own = series(self.own, combination, self.zero, basis)?;
-        let others = self.others.iter().filter_map(|unit| series(unit, combination, self.zero, basis));
+        let of = |unit: &[&Calibrated]| {
+            let with_all = with_all(unit, combination);
+            if with_all.len() < 2 { None } else { series(&with_all, combination, self.zero, basis) }
+        };
+        let own = of(self.own)?;
+        let others = self.others.iter().filter_map(|unit| of(unit));
         Some(std::iter::once(own).chain(others).collect())
     }
 
@@ -217,7 +240,7 @@ impl Job<'_> {
         let rests_on_priors = self.rests_on_priors(name);
         let all = self.combination(&single(name), if rests_on_priors { Basis::Stated } else { Basis::Data })?;
         let (own, between) = (&all[0], self.between(&all).filter(|_| !rests_on_priors));
-        let last = self.own.last()?;
+        let last = *with_all(self.own, &single(name)).last()?;
         let place = last.place(name)?;
         let evolution = between.as_ref().and_then(|between| self.evolution(&all, between));
         let slope = evolution.as_ref().and_then(Evolution::slope);
@@ -230,12 +253,8 @@ impl Job<'_> {
             name: name.to_owned(),
             unit: last.parameters[place].unit.clone(),
             group: last.parameters[place].group,
-            values: self.own.iter().filter_map(|c| Some(c.values[c.place(name)?])).collect(),
-            standard_uncertainties: self
-                .own
-                .iter()
-                .filter_map(|c| Some(c.standard_uncertainties[c.place(name)?]))
-                .collect(),
+            values: self.own.iter().map(|c| Some(c.values[c.place(name)?])).collect(),
+            standard_uncertainties: self.own.iter().map(|c| Some(c.standard_uncertainties[c.place(name)?])).collect(),
             between: between.as_ref().map(|b| b.variance.sqrt()),
             between_interval: between.as_ref().map(|b| b.interval.map(f64::sqrt)),
             variance_ratio: between.as_ref().map(Between::variance_ratio),
@@ -271,7 +290,12 @@ impl Job<'_> {
         let Some((last, terms)) = self.own.last().and_then(|last| Some((last, last.terms.clone()?))) else {
             return Vec::new();
         };
-        let (names, terms): (Vec<String>, Vec<Term>) = terms.into_iter().unzip();
+        // A term that is not determined has a share, for which the reading has no history; what it does to the shares of others is left out.
+        let known = |(name, term): (String, Term)| {
+            let coefficient = if term.coefficient.is_finite() { term.coefficient } else { 0.0 };
+            (name, Term { coefficient, ..term })
+        };
+        let (names, terms): (Vec<String>, Vec<Term>) = terms.into_iter().map(known).unzip();
         // Only its sensitivity is asked for.
         let covariance = DMatrix::zeros(terms.len(), terms.len());
         let Some(compensated) = Compensated::new(terms, covariance) else { return Vec::new() };
@@ -295,7 +319,10 @@ impl Job<'_> {
         let Some(last) = self.own.last() else { return 0.0 };
         let latest = self.own.iter().rev().find(|calibrated| calibrated.terms.is_some() && !is_part(calibrated, last));
         let terms = latest.into_iter().flat_map(|calibrated| calibrated.terms.iter().flatten());
-        let lacking = terms.filter(|(name, term)| term.axis == axis && last.place(name).is_none());
+        let is_lacking = |(name, term): &&(String, Term)| {
+            term.axis == axis && term.coefficient.is_finite() && last.place(name).is_none()
+        };
+        let lacking = terms.filter(is_lacking);
         lacking.map(|(_, term)| term.coefficient * term.monomial.value(force.into())).sum()
     }
 

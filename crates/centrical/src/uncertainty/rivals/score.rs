@@ -24,6 +24,8 @@ pub struct RivalTest {
     pub probability: f64,
     /// The same, family-wise over all rivals tested (Holm).
     pub family_wise: f64,
+    /// Probability by the stated variances of as large a chi^2 as it leaves.
+    pub probability_of_rest: f64,
 }
 
 /// The rivals that the residuals show.
@@ -91,6 +93,7 @@ impl Rivals<'_> {
             degrees_of_freedom: rank,
             probability,
             family_wise: 1.0,
+            probability_of_rest: chi_squared_tail((fit.chi_squared - statistic).max(0.0), left),
         }
     }
 }
