@@ -395,3 +395,115 @@ fn batches_that_differ_are_shown_with_their_means() {
         |batch: &str| text.lines().any(|line| line.contains("df_1") && line.contains(batch) && line.contains('±'));
     assert!(text.contains("BATCHES  mean") && row("east") && row("west"), "{text}");
 }
+
+/// A session that lacks a parameter hides its change in no other: the change is found, and the joint test differs.
+#[test]
+fn a_change_is_seen_beside_a_session_that_lacks_the_parameter() {
+    let results = Results::new();
+    let u = |name: &str| {
+        let parameters = first()["parameters"].as_array().unwrap();
+        parameters.iter().find(|p| p["name"] == name).unwrap()["standard_uncertainty"].as_f64().unwrap()
+    };
+    let step = 15.0 * u("G1_11");
+    for session in 0..8 {
+        results.add(&format!("s{session}"), "0001", &format!("{}-01-01", 2012 + session), |result| {
+            for parameter in result["parameters"].as_array_mut().unwrap() {
+                if parameter["name"] == "G1_11" {
+                    parameter["value"] = json!(parameter["value"].as_f64().unwrap() + step * f64::from(session));
+                    if session == 4 {
+                        parameter["value"] = Value::Null;
+                        parameter["standard_uncertainty"] = Value::Null;
+                        parameter["estimable"] = json!(false);
+                    }
+                }
+            }
+        });
+    }
+    let unit = results.document(&["unit", "."]);
+    let of = unit["parameters"].as_array().unwrap().iter().find(|p| p["name"] == "G1_11").unwrap();
+    assert!(of["drifts"] == true && unit["not_compared"].is_null(), "{of}");
+    let (_, text, _) = results.run(&["unit", "."]);
+    assert!(text.contains("DIFFERS") && text.contains("INCOMPLETE  2016-01-01"), "{text}");
+}
+
+/// Of two sessions of one day that with the later time is the last, whatever their names and hashes.
+#[test]
+fn sessions_of_one_day_stand_in_the_order_of_their_times() {
+    for hour in ["T08:00:00", "T09:00:00", "T10:00:00", "T11:00:00"] {
+        let results = Results::new();
+        results.add("z", "0001", &format!("2024-05-01{hour}"), |result| set(result, "df_1", 1e-3));
+        results.add("a", "0001", "2024-05-01T15:00:00", |result| set(result, "df_1", 2e-3));
+        results.add("b", "0001", "2023-05-01", |result| set(result, "df_1", 1e-3));
+        assert_eq!(results.run(&["add", "s", "z", "a", "b"]).0, 0);
+        for place in [".", "s"] {
+            let unit = results.document(&["unit", place]);
+            let of = unit["parameters"].as_array().unwrap().iter().find(|p| p["name"] == "df_1").unwrap();
+            assert_eq!(of["values"][2], 2e-3, "{of}");
+            assert_eq!(unit["sessions"][2]["stamp"], "2024-05-01T15:00:00");
+        }
+        assert!(results.run(&["unit", "s"]).1.contains("SAME DAY  2024-05-01"));
+    }
+}
+
+/// A date to come is no day that a limit holds on, and no day before the last calibration is asked.
+#[test]
+fn a_date_to_come_is_named() {
+    let results = Results::new();
+    results.add("a", "0001", "2024-05-01", |result| set(result, "df_1", 1e-3));
+    results.add("b", "0001", "2994-05-01", |result| set(result, "df_1", 1e-3));
+    let (code, text, _) = results.run(&["unit", ".", "--limit", "1 g"]);
+    assert!(code == 1 && text.contains("AHEAD  the last calibration is of 2994-05-01, later than today"), "{text}");
+    assert_eq!(results.document(&["unit", "."])["ahead"], true);
+    let (code, _, message) = results.run(&["unit", ".", "--limit", "1 g", "--on", "2024-06-01"]);
+    assert!(code == 2 && message.contains("found --on 2024-06-01, expected 2994-05-01"), "{message}");
+}
+
+/// Sessions of one day have no line in time; with a limit below what they state the unit is overdue.
+#[test]
+fn sessions_of_a_single_day_have_no_trend() {
+    let results = Results::new();
+    for session in 0..5 {
+        results.add(&format!("s{session}"), "0001", "2024-05-01", |result| {
+            set(result, "df_1", 1e-3 + 1e-5 * f64::from(session));
+        });
+    }
+    let (code, text, _) = results.run(&["unit", ".", "--limit", "1 ug"]);
+    assert!(code == 1 && text.contains("OVERDUE"), "{text}");
+    assert_eq!(results.document(&["unit", "."])["trend"], false);
+}
+
+/// Results of the same records agree better than independent calibrations do.
+#[test]
+fn results_that_are_too_alike_are_named() {
+    let results = Results::new();
+    for (session, day) in ["2024-01-01", "2024-02-01", "2024-03-01"].into_iter().enumerate() {
+        results.add(day, "0001", day, |result| set(result, "df_1", 1e-3 * (1.0 + 1e-9 * session as f64)));
+    }
+    let (_, text, _) = results.run(&["unit", "."]);
+    assert!(text.contains("TOO ALIKE") && !text.contains("THE SAME"), "{text}");
+}
+
+/// Batches are compared by the sessions at one station, by the last value as by the mean; a spreadsheet that dropped zeros is understood.
+#[test]
+fn batches_are_compared_at_one_station() {
+    let results = Results::new();
+    for unit in 0..8 {
+        let (serial, station) = (format!("000{unit}"), if unit < 5 { "east" } else { "west" });
+        let bias = if unit < 5 { 1e-3 } else { 9e-3 } + 1e-5 * f64::from(unit);
+        results.add(&serial, &serial, "2024-01-01", |result| {
+            set(result, "df_1", bias);
+            result["session"]["station"] = json!(station);
+        });
+    }
+    let batches = |text: &str| fs::write(results.path().join("b.csv"), text).unwrap();
+    let ask = ["units", ".", "--batches", "b.csv"];
+    batches("serial,batch\n0000,a\n0001,a\n0002,b\n0003,b\n0005,b\n0006,b\n");
+    assert_eq!(results.document(&ask)["batches_at"], "east");
+    assert!(results.run(&ask).1.contains("BATCHES ALIKE  a (2), b (2)"), "{}", results.run(&ask).1);
+    batches("serial,batch\n0000,a\n0001,a\n0005,b\n0006,b\n");
+    let (code, text, _) = results.run(&ask);
+    assert!(code == 1 && text.contains("BATCHES NOT COMPARED") && !text.contains("BATCHES DIFFER"), "{text}");
+    batches("serial,batch\n0,a\n1,a\n2,b\n3,b\n");
+    let (code, text, _) = results.run(&ask);
+    assert!(code == 1 && text.contains("no unit has the serial \"0\" of the batches, expected \"0000\"?"), "{text}");
+}

@@ -321,10 +321,10 @@ fn documents_say_what_the_past_means_for_a_reading() {
     assert!(!folder.path().join("x.html").exists());
 }
 
-/// A calibration that does not determine what the others do, as by rests alone, is left out and named, and so are the parameters that only the last one
-/// determines.
+/// A calibration that does not determine what the others do, as by rests alone, is named and compared by what it has; so are the parameters that only
+/// the last one determines. Units beside each other leave it out.
 #[test]
-fn a_calibration_with_fewer_parameters_is_left_out() {
+fn a_calibration_with_fewer_parameters_is_named() {
     let folder = plant();
     let folder = folder.path();
     let without = |result: &Path, prefix: &str| {
@@ -339,11 +339,15 @@ fn a_calibration_with_fewer_parameters_is_left_out() {
         fs::write(result, document.to_string()).unwrap();
     };
     without(&folder.join("plant/0001/1/result.json"), "G1_");
-    let ask = ["unit", "plant/0001", "--limit", "100 mg", "--on", "2023-03-02"];
+    let ask = ["unit", "plant/0001", "--limit", "100 mg", "--on", "2024-03-02"];
     let (unit, code) = history(folder, &ask);
     let count = |key: &str| unit[key].as_array().unwrap().len();
-    assert_eq!((count("sessions"), count("left_out"), code), (3, 1, 0));
-    assert!(unit["left_out"][0]["date"] == "2022-03-02" && unit["left_out"][0]["lacks"][0] == "G1_11", "{unit}");
+    assert_eq!((count("sessions"), count("incomplete"), code), (4, 1, 0));
+    assert!(unit["incomplete"][0]["date"] == "2022-03-02" && unit["incomplete"][0]["lacks"][0] == "G1_11", "{unit}");
+    assert_eq!(unit["left_out"], Value::Null);
+    let of = |name: &str| unit["parameters"].as_array().unwrap().iter().find(|p| p["name"] == name).unwrap();
+    let values = of("G1_11")["values"].as_array().unwrap();
+    assert!(values[1].is_null() && values[0].is_f64() && values.len() == 4 && of("df_1")["values"][1].is_f64());
     assert!(unit["is_within"].is_boolean() || unit["due_after"].is_string());
     let (units, _) = history(folder, &["units", "plant"]);
     assert_eq!((units["sessions"].as_u64(), units["left_out"].as_array().unwrap().len()), (Some(55), 1));

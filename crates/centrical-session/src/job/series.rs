@@ -6,7 +6,8 @@ mod request;
 mod table;
 mod workers;
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, HashSet};
+use std::fs;
 use std::path::{Path, PathBuf};
 
 use centrical::{OnProgress, Stopped};
@@ -19,7 +20,7 @@ use self::table::write_tables;
 use self::workers::Workers;
 use crate::document::SeriesSummary;
 use crate::error::Error;
-use crate::experiment::Session;
+use crate::experiment::{EXPERIMENT_FILE, Session};
 use crate::store::Store;
 
 /// Calibrates sessions, one on each core, and writes the table of all. A session that fails becomes a row with its message. A session
@@ -37,7 +38,7 @@ pub fn calibrate_series(
     let store = Store::create(&request.out)?;
     let outputs = Outputs::of(&[request.files().to_vec(), store.replaced()?].concat())?;
     let mut ledger = Ledger::read(&request.ledger(), request.method)?;
-    let sessions: BTreeSet<&Path> = sessions.iter().map(PathBuf::as_path).collect();
+    let sessions = each_once(sessions);
     let mut due = Vec::new();
     for session in &sessions {
         if progress(0).is_break() {
@@ -57,4 +58,16 @@ pub fn calibrate_series(
     Workers { request, store: &store, progress }.run(&due, &mut ledger)?;
     let summary = write_tables(request, &store, &ledger, &sessions)?;
     Ok(SeriesSummary { known, ..summary })
+}
+
+/// The sessions by their first names: one that is given under several spellings of its path, or by its experiment file, is one.
+fn each_once(sessions: &[PathBuf]) -> BTreeSet<&Path> {
+    let names: BTreeSet<&Path> = sessions.iter().map(PathBuf::as_path).collect();
+    let mut met = HashSet::new();
+    let folder = |name: &Path| {
+        let real = fs::canonicalize(name).ok()?;
+        let is_file = real.file_name().is_some_and(|name| name == EXPERIMENT_FILE) && real.is_file();
+        if is_file { real.parent().map(Path::to_owned) } else { Some(real) }
+    };
+    names.into_iter().filter(|name| folder(name).is_none_or(|folder| met.insert(folder))).collect()
 }

@@ -147,7 +147,7 @@ fn distributions(
     let by_batch = (2..=MOST_BATCHES).contains(&batches.len());
     let groups = |name: &str| {
         let mut groups: BTreeMap<&str, Vec<f64>> = BTreeMap::new();
-        for (unit, mean) in units.iter().zip(unit_means(units, name)) {
+        for (unit, mean) in units.iter().zip(unit_means(units.iter().map(Vec::as_slice), name)) {
             let group = if by_batch { batch(unit).map(String::as_str) } else { Some("units") };
             if let Some(group) = group {
                 groups.entry(group).or_default().push(mean);

@@ -4,8 +4,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use centrical_session::{
-    Calibrated, Depth, Error, OnProgress, ParameterLimits, Selection, UnitHistoryRequest, read_calibrations, sha256,
-    unit_history, unwatched,
+    Calibrated, Date, Depth, Error, OnProgress, ParameterLimits, Selection, UnitHistoryRequest, read_calibrations,
+    sha256, unit_history, unwatched,
 };
 
 use super::overview::{Overview, charts};
@@ -65,7 +65,8 @@ impl UnitPages {
 
     /// The page of a unit by its calibrations, in the order of time.
     pub fn made(&self, calibrations: &[Calibrated]) -> String {
-        let request = UnitHistoryRequest { limit: self.limit, ..UnitHistoryRequest::default() };
+        let on = self.limit.map(|_| Date::today());
+        let request = UnitHistoryRequest { limit: self.limit, on, ..UnitHistoryRequest::default() };
         let Some(report) = unit_history(calibrations, &[], request) else {
             return no_unit_history_page(&calibrations[0].unit_model, &calibrations[0].unit_serial);
         };
@@ -77,11 +78,13 @@ impl UnitPages {
     /// What a page is made of: the calibrations, what is asked, and the program.
     pub fn origin(&self, keys: &BTreeSet<String>) -> String {
         let program = env!("CARGO_PKG_VERSION");
-        let mut origin = format!("{program} {FORM} {:?} {:?} {}", self.limit, self.limits, self.accepted);
+        // Whether a unit is overdue is a question of the day.
+        let day = self.limit.map_or_else(String::new, |_| Date::today().to_string());
+        let mut origin = format!("{program} {FORM} {day} {:?} {:?} {}", self.limit, self.limits, self.accepted);
         origin.extend(keys.iter().map(String::as_str));
         sha256(origin.as_bytes())
     }
 }
 
 /// Counts up when a page of the same calibrations looks otherwise.
-const FORM: u32 = 4;
+const FORM: u32 = 5;

@@ -1,5 +1,7 @@
 //! The page of a unit.
 
+use std::fmt::Write;
+
 use centrical_session::{ParameterLimits, UnitHistoryReport, unit_name};
 
 use super::charts::StoreCharts;
@@ -13,6 +15,10 @@ pub fn history_unit_page(report: &UnitHistoryReport, limits: &ParameterLimits, c
     let title = unit_name(&report.unit_model, &report.unit_serial);
     let mut body = opening("Unit", &title);
     shown(&mut body, &unit_history_text(report));
+    if report.limit.is_some() {
+        let _ =
+            writeln!(body, "<p>What is due and overdue is of {}; made anew, the page is of that day.</p>", report.on);
+    }
     body.push_str("<h2>Parameters over time</h2>\n");
     panels(&mut body, unit_history_plots(report, limits).into_iter().map(|(_, plot)| plot.as_panel()));
     charts.write(&mut body);

@@ -1,6 +1,6 @@
 //! The calibrations of a store as text for the terminal.
 
-use centrical_session::{DoubtKind, HistoryLine, HistoryList};
+use centrical_session::{DoubtKind, HistoryLine, HistoryList, unit_name};
 
 use crate::number::counted;
 use crate::terminal::screen::{Emphasis, Screen};
@@ -49,11 +49,19 @@ fn doubts(screen: &mut Screen, list: &HistoryList) {
     }
     for doubt in doubts {
         let (mark, words) = words(doubt.kind);
-        let shown = &doubt.of[..doubt.of.len().min(MOST_SHOWN)];
+        let shown: Vec<String> = doubt.of.iter().take(MOST_SHOWN).map(|of| named(list, of)).collect();
         let more = doubt.of.len() - shown.len();
         let more = if more > 0 { format!(" and {more} more") } else { String::new() };
-        screen.marked(Emphasis::NotAcceptable, mark, &format!("{}{more}: {words}", shown.join(", ")));
+        screen.marked(Emphasis::NotAcceptable, mark, &format!("{}{more}: {words}", shown.join("; ")));
     }
+}
+
+/// A calibration by its unit and day before its key; other names as they are.
+fn named(list: &HistoryList, of: &str) -> String {
+    let line = list.calibrations.iter().find(|line| line.key == of);
+    let with_unit =
+        |line: &HistoryLine| format!("{}, {}, {of}", unit_name(&line.unit_model, &line.unit_serial), line.date);
+    line.map_or_else(|| of.to_owned(), with_unit)
 }
 
 /// Calibrations that a line names; the document has all.

@@ -37,7 +37,10 @@ fn verdict(screen: &mut Screen, report: &UnitsHistoryReport) {
         (true, true) => (Emphasis::Acceptable, "ALIKE", "no unit stands out, drifts or scatters more than the others"),
         (true, false) => (Emphasis::Warning, "NOT TESTED", "nothing was found, but not all units could be compared"),
         (false, _) if !are_alike => (Emphasis::NotAcceptable, "NOT ALIKE", "the units stand below; family-wise 5 %"),
-        (false, _) => (Emphasis::NotAcceptable, "NOT WITHIN LIMITS", "the units stand below"),
+        (false, _) if !report.beyond_limits.is_empty() => {
+            (Emphasis::NotAcceptable, "NOT WITHIN LIMITS", "the units stand below")
+        }
+        (false, _) => (Emphasis::NotAcceptable, "NOT COMPARED", "no unit stands out, but batches were not compared"),
     };
     screen.marked(emphasis, mark, words);
 }
@@ -155,14 +158,19 @@ fn parameters(screen: &mut Screen, report: &UnitsHistoryReport) {
 
 /// What the comparison of batches says where they do not differ.
 fn batches(screen: &mut Screen, report: &UnitsHistoryReport) {
-    let Some(of) = report.parameters.iter().find(|p| !p.batches.is_empty()) else { return };
-    let list: Vec<String> = of.batches.iter().map(|b| format!("{} ({})", b.batch, b.units)).collect();
-    let list = first_of(&list, SHOWN);
+    let all = report.parameters.first().map_or(&[][..], |of| &of.batches);
+    let list: Vec<String> = all.iter().map(|b| format!("{} ({})", b.batch, b.units)).collect();
+    let list = if list.is_empty() { "no unit of a batch".to_owned() } else { first_of(&list, SHOWN) };
     let compared = report.parameters.iter().filter(|p| p.batch_probability.is_some()).count();
-    if compared == 0 {
-        let words = format!("{list}: two batches of two units at least can be compared");
+    if let Some(station) = report.batches_at.as_ref().filter(|_| !all.is_empty()) {
+        let words =
+            format!("{list} at {station:?} alone: what sessions of a station share would separate batches of two");
+        screen.marked(Emphasis::Warning, "BATCHES", &words);
+    }
+    if report.batches_not_compared {
+        let words = format!("{list}: two batches of two units at least at one station can be compared");
         screen.marked(Emphasis::Warning, "BATCHES NOT COMPARED", &words);
-    } else if !report.parameters.iter().any(|p| p.batches_differ) {
+    } else if compared > 0 && !report.parameters.iter().any(|p| p.batches_differ) {
         let words = format!("{list}: their means differ in none of {}", counted(compared, "parameter"));
         screen.marked(Emphasis::Acceptable, "BATCHES ALIKE", &words);
     }

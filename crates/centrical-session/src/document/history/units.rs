@@ -34,8 +34,15 @@ pub struct UnitsHistoryReport {
     /// The stations that have fewer, with their units.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub untested: Vec<UntestedStation>,
-    /// Whether no unit is outlying, drifts, scatters or is beyond a limit, and batches do not differ: of what was tested.
+    /// Whether no unit is outlying, drifts, scatters or is beyond a limit, and batches, where they were given, do not differ: of what was
+    /// tested.
     pub is_sound: bool,
+    /// Whether batches were given that cannot be compared.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub batches_not_compared: bool,
+    /// The station at which batches are compared, of several.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub batches_at: Option<String>,
     /// Units beyond a limit of a parameter.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub beyond_limits: Vec<BeyondLimit>,
@@ -59,7 +66,7 @@ pub struct UntestedStation {
     pub units: Vec<String>,
 }
 
-/// Units whose mean is beyond a limit of a parameter.
+/// Units whose mean or last value is beyond a limit of a parameter.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct BeyondLimit {
     /// The parameter.

@@ -1,5 +1,6 @@
 //! Units of one type beside each other.
 
+use std::borrow::Borrow;
 use std::collections::{BTreeMap, BTreeSet};
 
 use centrical::history::{
@@ -42,17 +43,19 @@ pub fn units_history(compared: &ComparedUnits, request: &UnitsHistoryRequest) ->
     if names.is_empty() {
         return None;
     }
+    let stations = by_station(units);
+    let at_one = of_batches(&stations, &lasts, request);
     let (mut parameters, mut beyond_limits) = (Vec::new(), Vec::new());
     for name in &names {
-        let means = unit_means(units, name);
-        parameters.extend(parameter(&lasts, name, &means, request));
+        let means = unit_means(units.iter().map(Vec::as_slice), name);
+        let batches = batches(&at_one, &lasts, name, request);
+        parameters.extend(parameter(&lasts, name, &means, batches, request));
         beyond_limits.extend(beyond_limit(&lasts, name, &means, &request.limits));
     }
     let batches: Vec<f64> = parameters.iter().map(|p| p.batch_probability.unwrap_or(1.0)).collect();
     for (parameter, chance) in parameters.iter_mut().zip(family_wise(&batches)) {
         parameter.batches_differ = chance < FAMILY;
     }
-    let stations = by_station(units);
     let by_parameter = by_parameter(&stations, &lasts, &names, &all);
     let (tested, few): (Vec<&AtStation>, Vec<&AtStation>) =
         stations.iter().partition(|units| units.len() >= FEWEST_UNITS);
@@ -61,6 +64,7 @@ pub fn units_history(compared: &ComparedUnits, request: &UnitsHistoryRequest) ->
     let outlying = outlying(&tested, &lasts, &by_parameter, level);
     let findings = over_time(by_parameter, level);
     let batches_differ = parameters.iter().any(|p| p.batches_differ);
+    let are_compared = request.batches.is_empty() || parameters.iter().any(|p| p.batch_probability.is_some());
     Some(UnitsHistoryReport {
         schema: UNITS_HISTORY_SCHEMA,
         program: Program::this(),
@@ -71,7 +75,13 @@ pub fn units_history(compared: &ComparedUnits, request: &UnitsHistoryRequest) ->
         left_out: left_out.clone(),
         is_tested: few.is_empty(),
         untested: few.into_iter().map(|units| untested(units, &lasts)).collect(),
-        is_sound: outlying.is_empty() && findings.is_empty() && beyond_limits.is_empty() && !batches_differ,
+        is_sound: outlying.is_empty()
+            && findings.is_empty()
+            && beyond_limits.is_empty()
+            && !batches_differ
+            && are_compared,
+        batches_not_compared: !are_compared,
+        batches_at: at_one.first().map(|(_, unit)| unit[0].station.clone()).filter(|_| stations.len() > 1),
         beyond_limits,
         outlying,
         findings,
@@ -81,19 +91,20 @@ pub fn units_history(compared: &ComparedUnits, request: &UnitsHistoryRequest) ->
 }
 
 /// Mean of one parameter over the calibrations of each unit; all determine it.
-pub fn unit_means(units: &[Vec<Calibrated>], name: &str) -> Vec<f64> {
+pub fn unit_means<'a, C: Borrow<Calibrated> + 'a>(units: impl Iterator<Item = &'a [C]>, name: &str) -> Vec<f64> {
     let mut finder = Finder::new(name);
-    let mean = |unit: &Vec<Calibrated>| {
-        let values = unit.iter().filter_map(|c| finder.place(c).map(|place| c.values[place]));
+    let mean = |unit: &[C]| {
+        let values = unit.iter().map(Borrow::borrow).filter_map(|c| finder.place(c).map(|place| c.values[place]));
         values.sum::<f64>() / unit.len() as f64
     };
-    units.iter().map(mean).collect()
+    units.map(mean).collect()
 }
 
 fn parameter(
     lasts: &[&Calibrated],
     name: &str,
     values: &[f64],
+    batches: BTreeMap<&str, Vec<f64>>,
     request: &UnitsHistoryRequest,
 ) -> Option<UnitsParameter> {
     let of = lasts[0];
@@ -111,7 +122,6 @@ fn parameter(
         cpk: found.cpk.value,
         cpk_interval: found.cpk.interval,
     });
-    let batches = batches(lasts, values, request);
     Some(UnitsParameter {
         name: name.to_owned(),
         unit: of.parameters[place].unit.clone(),
@@ -150,11 +160,12 @@ fn untested(units: &AtStation, lasts: &[&Calibrated]) -> UntestedStation {
     }
 }
 
-/// The units whose `means` of one parameter are beyond a limit, if there are any.
+/// The units whose `means` of one parameter, or last values, are beyond a limit, if there are any.
 fn beyond_limit(lasts: &[&Calibrated], name: &str, means: &[f64], limits: &ParameterLimits) -> Option<BeyondLimit> {
     let (low, high) = limits.get(name).copied()?;
-    let is_beyond = |mean: f64| low.is_some_and(|low| mean < low) || high.is_some_and(|high| mean > high);
-    let beyond = means.iter().zip(lasts).filter(|(mean, _)| is_beyond(**mean));
+    let is_beyond = |value: f64| low.is_some_and(|low| value < low) || high.is_some_and(|high| value > high);
+    let is_last_beyond = |last: &Calibrated| last.place(name).is_some_and(|place| is_beyond(last.values[place]));
+    let beyond = means.iter().zip(lasts).filter(|(mean, last)| is_beyond(**mean) || is_last_beyond(last));
     let units: Vec<String> = beyond.map(|(_, last)| last.unit_serial.clone()).collect();
     (!units.is_empty()).then(|| BeyondLimit { parameter: name.to_owned(), units })
 }
@@ -285,25 +296,57 @@ fn without_unit(batches: &BTreeMap<String, String>, lasts: &[&Calibrated]) -> Ve
     let serials: BTreeSet<&str> = lasts.iter().map(|unit| unit.unit_serial.as_str()).collect();
     let mut by_spelling: BTreeMap<String, Vec<String>> = BTreeMap::new();
     for serial in &serials {
-        by_spelling.entry(spelling(serial)).or_default().push((*serial).to_owned());
+        by_spelling.entry(without_zeros(serial)).or_default().push((*serial).to_owned());
     }
     let without = batches.keys().filter(|serial| !serials.contains(serial.as_str()));
     let mut without: Vec<BatchWithoutUnit> = without
         .map(|serial| BatchWithoutUnit {
             unit_serial: serial.clone(),
-            near: by_spelling.get(&spelling(serial)).cloned().unwrap_or_default(),
+            near: by_spelling.get(&without_zeros(serial)).cloned().unwrap_or_default(),
         })
         .collect();
     without.sort_by_key(|of| of.near.is_empty());
     without
 }
 
-/// The values of each batch of units, by its name.
-fn batches<'a>(lasts: &[&Calibrated], values: &[f64], request: &'a UnitsHistoryRequest) -> BTreeMap<&'a str, Vec<f64>> {
+/// A serial number as a spreadsheet may leave it: 0042 becomes 42.
+fn without_zeros(serial: &str) -> String {
+    spelling(serial).trim_start_matches('0').to_owned()
+}
+
+/// The units of batches by their sessions at one station, where most of them can be compared: type B that sessions of a station share would
+/// separate batches of two stations.
+fn of_batches<'a>(stations: &[AtStation<'a>], lasts: &[&Calibrated], request: &UnitsHistoryRequest) -> AtStation<'a> {
+    let with_batch = |units: &AtStation<'a>| -> AtStation<'a> {
+        let has_batch =
+            |(number, _): &&(usize, Vec<&Calibrated>)| request.batches.contains_key(&lasts[*number].unit_serial);
+        units.iter().filter(has_batch).cloned().collect()
+    };
+    let number_compared = |units: &AtStation| {
+        let mut sizes: BTreeMap<&str, usize> = BTreeMap::new();
+        for (number, _) in units {
+            *sizes.entry(&request.batches[&lasts[*number].unit_serial]).or_default() += 1;
+        }
+        let sizes: Vec<usize> = sizes.into_values().filter(|size| *size > 1).collect();
+        if sizes.len() > 1 { sizes.iter().sum() } else { 0 }
+    };
+    // Of equals the first, by the names of the stations.
+    let candidates = stations.iter().rev().map(with_batch);
+    candidates.max_by_key(|units| (number_compared(units), units.len())).unwrap_or_default()
+}
+
+/// The means of the units of each batch, by its name.
+fn batches<'a>(
+    units: &AtStation,
+    lasts: &[&Calibrated],
+    name: &str,
+    request: &'a UnitsHistoryRequest,
+) -> BTreeMap<&'a str, Vec<f64>> {
+    let means = unit_means(units.iter().map(|(_, sessions)| sessions.as_slice()), name);
     let mut batches: BTreeMap<&str, Vec<f64>> = BTreeMap::new();
-    for (unit, value) in lasts.iter().zip(values) {
-        if let Some(batch) = request.batches.get(&unit.unit_serial) {
-            batches.entry(batch).or_default().push(*value);
+    for ((number, _), mean) in units.iter().zip(means) {
+        if let Some(batch) = request.batches.get(&lasts[*number].unit_serial) {
+            batches.entry(batch).or_default().push(mean);
         }
     }
     batches
