@@ -9,8 +9,8 @@ mod results;
 mod screen;
 
 pub use self::history::{
-    IndexedModel, IndexedStation, ListedUnit, PageKind, StoreCharts, history_index, history_model_page,
-    history_station_page, history_unit_page, no_unit_history_page,
+    IndexedModel, IndexedStation, ListedUnit, PageKind, StoreCharts, UnitDue, history_due_page, history_index,
+    history_model_page, history_station_page, history_unit_page, no_unit_history_page,
 };
 pub use self::html::html;
 pub use self::live::{LIVE_SCRIPT, LIVE_STYLE, live_page, live_panel};

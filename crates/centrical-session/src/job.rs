@@ -14,6 +14,7 @@ mod observe;
 mod plan;
 mod reduce;
 mod reduced_session;
+mod scale;
 mod series;
 mod settings_schema;
 mod simulate;

@@ -153,8 +153,8 @@ fn pages_name_every_calibration_and_no_name_becomes_markup() {
     let index = fs::read_to_string(folder.join("pages/index.html")).unwrap();
     assert_eq!(index.matches("<tr><td>").count(), UNITS * SESSIONS + 1);
     assert!(!index.contains("<script>alert") && index.contains("&lt;script&gt;alert"));
-    // The list, a model, a station.
-    assert_eq!(fs::read_dir(folder.join("pages")).unwrap().count(), 3 + UNITS);
+    // The list, the due dates, a model, a station.
+    assert_eq!(fs::read_dir(folder.join("pages")).unwrap().count(), 4 + UNITS);
     let unit = page(folder, "unit-0003-");
     assert!(unit.contains("serial 0003") && unit.contains("DRIFTS") && unit.matches("<svg").count() > 40);
     assert!(unit.contains("found 4 acceptable sessions, expected 20 for the limits"));
@@ -223,6 +223,35 @@ fn pages_show_what_the_commands_say() {
     assert!(station.contains(&words), "{words}");
     let refused = run(folder, &["history", "page", "store", "--out", "other", "--laboratory", "nowhere.toml"]);
     assert!(refused.status.code() == Some(2) && !folder.join("other").exists(), "{refused:?}");
+}
+
+/// With a limit the pages say of each unit what the command says today, in the list of due dates as on the page of the unit.
+#[test]
+fn due_dates_of_all_units_stand_in_a_list() {
+    let folder = plant();
+    let folder = folder.path();
+    let limit = ["--limit", "2 mg"];
+    let made = run(folder, &[&["history", "page", "store", "--out", "pages"], limit.as_slice()].concat());
+    assert!(made.status.success(), "{made:?}");
+    let due = page(folder, "due.html");
+    let (mut overdue, mut within) = (0, 0);
+    for unit in 0..UNITS {
+        let serial = format!("{unit:04}");
+        let ask = ["unit", "store", "--serial", &serial, limit[0], limit[1]];
+        let (report, code) = history(folder, &ask);
+        let is_overdue = report["is_within"] == false;
+        assert_eq!(code, i32::from(is_overdue));
+        let line = due.lines().find(|line| line.contains(&format!(">{serial}</a>"))).unwrap();
+        assert_eq!(line.contains("<td class=\"bad\">overdue</td>"), is_overdue, "{line}");
+        if let Some(day) = report["due"]["date"].as_str() {
+            assert!(line.ends_with(&format!("<td>{day}</td></tr>")), "{line}");
+        }
+        assert_eq!(page(folder, &format!("unit-{serial}")).contains("OVERDUE"), is_overdue, "{serial}");
+        *(if is_overdue { &mut overdue } else { &mut within }) += 1;
+    }
+    assert!(overdue > 0, "{overdue} {within}");
+    assert!(due.contains(&format!("of {UNITS} units: {overdue} overdue.")));
+    assert!(page(folder, "index.html").contains("<a href=\"due.html\">"));
 }
 
 /// A page is made anew if one of its calibrations is new, or something else is asked.

@@ -321,3 +321,36 @@ fn what_cannot_be_done_is_refused() {
         assert!(run.status.code() == Some(2) && message.contains(part), "{arguments:?}: {message}");
     }
 }
+
+/// One channel of one record in another unit: the fit shares the fault out among all scales, so that the mounting is asked. Whatever is refused by a
+/// scale names the mounting and the newtonometer.
+#[test]
+fn one_channel_of_one_mounting_in_another_unit_is_named() {
+    let copy = Copy::new();
+    let session = copy.session();
+    assert!(copy.run(&["reduce", session.to_str().unwrap(), "--out", "reduced"]).status.success());
+    let file = copy.out().join("reduced/plateaus.csv");
+    let table = fs::read_to_string(&file).unwrap();
+    let names: Vec<&str> = table.lines().next().unwrap().split(',').collect();
+    let mut named = 0;
+    for (mounting, axis) in (1..=12).flat_map(|mounting| [1, 2, 3].map(|axis| (mounting, axis))) {
+        let mean = names.iter().position(|name| *name == format!("mean_{axis}")).expect("a column of means");
+        let scaled = |line: &str| {
+            let mut cells: Vec<String> = line.split(',').map(str::to_owned).collect();
+            if cells[0] == mounting.to_string() {
+                cells[mean] = (cells[mean].parse::<f64>().unwrap() / 9.80665).to_string();
+            }
+            cells.join(",") + "\n"
+        };
+        fs::write(&file, table.lines().map(scaled).collect::<String>()).unwrap();
+        let run = copy.run(&["calibrate", "reduced", "--out", "out", "--quiet"]);
+        let message = String::from_utf8(run.stderr).unwrap();
+        assert_ne!(run.status.code(), Some(0), "{mounting} {axis}");
+        if message.contains("times the") {
+            let expected = format!("found readings of newtonometer {axis} in mounting {mounting} of 0.1");
+            assert!(message.contains(&expected) && message.contains("as if in g"), "{message}");
+            named += 1;
+        }
+    }
+    assert!(named > 5, "{named}");
+}

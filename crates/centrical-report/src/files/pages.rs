@@ -9,10 +9,10 @@ use std::path::Path;
 
 use centrical_session::{Error, OnProgress, claim_folder, refuse_inputs, unwatched};
 
-use self::overview::Overview;
+use self::overview::{DUE_PAGE, Overview};
 pub use self::request::PagesRequest;
 use self::unit::UnitPages;
-use self::written::{write_page, write_units};
+use self::written::{beginning, write_page, write_units};
 
 /// The pages of a store as it was when it was read. Those of units, which may be many, are made one by one.
 #[derive(Debug)]
@@ -44,6 +44,9 @@ impl StorePages {
         if file == INDEX {
             return Ok(Some(self.overview.index.clone()));
         }
+        if file == DUE_PAGE {
+            return Ok(self.overview.due(|unit| self.units.page(unit).ok().flatten()));
+        }
         match self.overview.pages.get(file) {
             Some(page) => Ok(Some(page.clone())),
             None => self.units.page(file),
@@ -71,9 +74,13 @@ pub fn write_history_pages(
         write_page(&out.join(file), page)?;
     }
     write_units(&units, out, progress)?;
+    let due = overview.due(|file| beginning(&out.join(file)));
+    if let Some(page) = &due {
+        write_page(&out.join(DUE_PAGE), page)?;
+    }
     // The list comes last: it names pages that are there.
     write_page(&index, &overview.index)?;
-    Ok(1 + overview.pages.len() + units.count())
+    Ok(1 + overview.pages.len() + units.count() + usize::from(due.is_some()))
 }
 
 /// Name of the first page.

@@ -2,6 +2,7 @@
 //! script sorts and filters lists, which are whole without it.
 
 mod charts;
+mod due;
 mod frame;
 mod index;
 mod model;
@@ -10,6 +11,7 @@ mod unit;
 mod units;
 
 pub use self::charts::StoreCharts;
+pub use self::due::{UnitDue, history_due_page};
 pub use self::frame::PageKind;
 pub use self::index::{IndexedModel, IndexedStation, history_index};
 pub use self::model::history_model_page;

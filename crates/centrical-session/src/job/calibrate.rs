@@ -1,12 +1,13 @@
 //! The whole job for one session: what the command, a fleet's worker and a notebook all call.
 
 use centrical::uncertainty::BetweenRests;
-use centrical::{Calibration, Data, FitError, Group, MeasurementModel, OnProgress, STANDARD_GRAVITY, advance};
+use centrical::{Calibration, Data, FitError, MeasurementModel, OnProgress, advance};
 
 use super::reduce::reduce;
+use super::scale::refuse_scale;
 use crate::document::{BetweenRestsSummary, CalibrationResult, Method, RecordFindings};
-use crate::error::{Error, Place};
-use crate::experiment::{LARGEST_SCALE_ERROR, PlateauName, RestTable, Session};
+use crate::error::Error;
+use crate::experiment::{PlateauName, Session};
 use crate::reduced::Reduced;
 
 /// What is fitted: the plateau means of a session and the model of them.
@@ -193,33 +194,4 @@ pub(super) fn as_result(
         Some(findings) => findings.added_to(result),
         None => result,
     })
-}
-
-/// Of readings in another unit or with the other sign: how many times too large, and what they are.
-const OTHER_READINGS: [(f64, &str); 4] = [
-    (-1.0, ", as if its sign were reversed"),
-    (1.0 / STANDARD_GRAVITY, ", as if in g"),
-    (1000.0 / STANDARD_GRAVITY, ", as if in mg"),
-    (STANDARD_GRAVITY, ", as if m/s^2 stood for g"),
-];
-
-/// Refuses a scale error beyond the largest by three standard uncertainties: the readings are in another unit or have the other sign.
-/// Records are asked whether either fits better; means have no samples to ask.
-fn refuse_scale(calibration: &Calibration, session: &Session) -> Result<(), Error> {
-    let (model, fit) = (calibration.data().model(), calibration.fit());
-    for (j, parameter) in model.parameters().iter().enumerate().filter(|(_, p)| p.group == Group::Scale) {
-        let Some((error, variance)) = fit.value(j).zip(fit.covariance(j, j)) else { continue };
-        if error.abs() - 3.0 * variance.sqrt() > LARGEST_SCALE_ERROR {
-            let is_near = |times: f64| ((1.0 + error) / times - 1.0).abs() < LARGEST_SCALE_ERROR;
-            let as_if = OTHER_READINGS.iter().find(|(times, _)| is_near(*times)).map_or("", |(_, as_if)| as_if);
-            let times = 1.0 + error;
-            let found =
-                format!("readings of {times:.4} times the specific force ({} = {error:.4}){as_if}", parameter.name);
-            let expected = "0.7 to 1.3 times: readings in the stated unit, with the sign of their axis, and the nominal scale of raw output";
-            let of_rests = session.rest_tables.iter().flat_map(RestTable::files).next();
-            let file = of_rests.filter(|_| session.mountings.is_empty()).unwrap_or(&session.file);
-            return Err(Error::content(file, Place::Whole, found, expected));
-        }
-    }
-    Ok(())
 }

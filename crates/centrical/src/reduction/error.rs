@@ -113,7 +113,7 @@ pub enum ReductionError {
     /// A newtonometer is stuck on a plateau.
     #[error(
         "plateau {} from {:.3} s to {:.3} s: f{} reads exactly {value} m/s^2 in {stuck} of {samples} samples: \
-         a stuck newtonometer, or one beyond its range; expected noise", index + 1, window[0], window[1], axis + 1
+         a stuck newtonometer, one beyond its range, or steps of the reading that are coarser than its noise and not stated; expected noise", index + 1, window[0], window[1], axis + 1
     )]
     Stuck {
         /// Index of the plateau in the schedule.

@@ -12,9 +12,12 @@ use rayon::prelude::*;
 
 use super::request::PagesRequest;
 use crate::render::{
-    IndexedModel, IndexedStation, ListedUnit, PageKind, StoreCharts, history_index, history_model_page,
-    history_station_page,
+    IndexedModel, IndexedStation, ListedUnit, PageKind, StoreCharts, UnitDue, history_due_page, history_index,
+    history_model_page, history_station_page,
 };
+
+/// Name of the list of due dates.
+pub const DUE_PAGE: &str = "due.html";
 
 /// Sessions that a control chart shows: the last ones.
 const SHOWN: usize = 100;
@@ -33,9 +36,18 @@ pub struct Overview {
     pub pages: BTreeMap<String, String>,
     /// Keys of the calibrations of each unit that has a page, by its file.
     pub units: BTreeMap<String, BTreeSet<String>>,
+    /// The same units as they are listed, if there is a limit that they may be due for.
+    pub with_limit: Option<Vec<(String, ListedUnit)>>,
 }
 
 impl Overview {
+    /// The list of due dates, by the page of each unit or its beginning; `None` without a limit, or where a page does not say.
+    pub fn due(&self, page: impl Fn(&str) -> Option<String>) -> Option<String> {
+        let units = self.with_limit.as_ref()?.iter();
+        let due = units.map(|(file, unit)| Some((unit, UnitDue::read(&page(file)?)?)));
+        Some(history_due_page(due.collect::<Option<_>>()?, Date::today()))
+    }
+
     /// Reads the values of all calibrations. `progress` is asked again and again.
     ///
     /// # Errors
@@ -54,8 +66,14 @@ impl Overview {
         advance(progress, 0)?;
         let models = models(calibrations, listed, &asked, request, &mut pages);
         advance(progress, 0)?;
-        let index = history_index(&list, &models, &stations, |file| units.contains_key(file));
-        Ok(Self { limits: asked.limits, index, pages, units })
+        let with_limit = request.limit.map(|_| {
+            let file = |unit: &ListedUnit| PageKind::Unit.file(&[&unit.model, &unit.serial]);
+            let all = listed.units(|_| true).into_iter().map(|unit| (file(&unit), unit));
+            all.filter(|(file, _)| units.contains_key(file)).collect()
+        });
+        let due = with_limit.as_ref().map(|_| DUE_PAGE);
+        let index = history_index(&list, &models, &stations, due, |file| units.contains_key(file));
+        Ok(Self { limits: asked.limits, index, pages, units, with_limit })
     }
 }
 

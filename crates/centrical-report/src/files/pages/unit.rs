@@ -4,13 +4,13 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use centrical_session::{
-    Calibrated, Date, Depth, Error, OnProgress, ParameterLimits, Selection, UnitHistoryRequest, read_calibrations,
-    sha256, unit_history, unwatched,
+    Calibrated, Date, Depth, Error, OnProgress, ParameterLimits, Selection, UnitHistoryReport, UnitHistoryRequest,
+    read_calibrations, sha256, unit_history, unwatched,
 };
 
 use super::overview::{Overview, charts};
 use super::request::PagesRequest;
-use crate::render::{history_unit_page, no_unit_history_page};
+use crate::render::{UnitDue, history_unit_page, no_unit_history_page};
 
 /// The units that have a page.
 #[derive(Debug)]
@@ -67,12 +67,18 @@ impl UnitPages {
     pub fn made(&self, calibrations: &[Calibrated]) -> String {
         let on = self.limit.map(|_| Date::today());
         let request = UnitHistoryRequest { limit: self.limit, on, ..UnitHistoryRequest::default() };
-        let Some(report) = unit_history(calibrations, &[], request) else {
+        let report = unit_history(calibrations, &[], request);
+        let due = self.limit.map_or_else(String::new, |_| UnitDue::of(report.as_ref()).comment());
+        self.shown(calibrations, report.as_ref()).replacen(DOCTYPE, &format!("{DOCTYPE}{due}"), 1)
+    }
+
+    fn shown(&self, calibrations: &[Calibrated], report: Option<&UnitHistoryReport>) -> String {
+        let Some(report) = report else {
             return no_unit_history_page(&calibrations[0].unit_model, &calibrations[0].unit_serial);
         };
         let names: Vec<&str> = report.parameters.iter().map(|p| p.name.as_str()).collect();
         let charts = charts(&calibrations.iter().collect::<Vec<_>>(), &names, self.accepted);
-        history_unit_page(&report, &self.limits, &charts)
+        history_unit_page(report, &self.limits, &charts)
     }
 
     /// What a page is made of: the calibrations, what is asked, and the program.
@@ -85,6 +91,9 @@ impl UnitPages {
         sha256(origin.as_bytes())
     }
 }
+
+/// How a page begins.
+pub const DOCTYPE: &str = "<!DOCTYPE html>\n";
 
 /// Counts up when a page of the same calibrations looks otherwise.
 const FORM: u32 = 5;

@@ -8,7 +8,7 @@ use std::path::Path;
 use centrical_session::{Calibrated, Error, OnProgress, advance, by_unit, write_stream};
 use rayon::prelude::*;
 
-use super::unit::UnitPages;
+use super::unit::{DOCTYPE, UnitPages};
 use crate::render::PageKind;
 
 /// Calibrations that are read together with their covariances, 10 kB each; twice as many are held.
@@ -73,10 +73,15 @@ fn opening(units: &UnitPages, keys: &BTreeSet<String>) -> String {
     format!("{DOCTYPE}<!-- {} -->\n", units.origin(keys))
 }
 
-const DOCTYPE: &str = "<!DOCTYPE html>\n";
-
 fn begins_with(file: &Path, opening: &str) -> bool {
     let mut begin = vec![0; opening.len()];
     let read = File::open(file).and_then(|mut file| file.read_exact(&mut begin));
     read.is_ok() && begin == opening.as_bytes()
+}
+
+/// The first kilobyte of a page, where its comments stand.
+pub fn beginning(file: &Path) -> Option<String> {
+    let mut begin = Vec::new();
+    File::open(file).ok()?.take(1024).read_to_end(&mut begin).ok()?;
+    Some(String::from_utf8_lossy(&begin).into_owned())
 }

@@ -26,11 +26,12 @@ pub struct IndexedStation {
     pub has_signals: bool,
 }
 
-/// The first page, with a link to each unit's file for which `has_page` holds.
+/// The first page, with a link to each unit's file for which `has_page` holds, and to the list of due dates in the file `due`.
 pub fn history_index(
     list: &HistoryList,
     models: &[IndexedModel],
     stations: &[IndexedStation],
+    due: Option<&str>,
     has_page: impl Fn(&str) -> bool,
 ) -> String {
     let failed = list.failed();
@@ -40,6 +41,9 @@ pub fn history_index(
         counted(list.calibrations.len() - failed, "calibration"),
         counted(failed, "failed session")
     );
+    if let Some(file) = due {
+        let _ = writeln!(body, "<p><a href=\"{file}\">due dates of all units</a></p>");
+    }
     models_table(&mut body, models);
     stations_table(&mut body, stations);
     body.push_str(

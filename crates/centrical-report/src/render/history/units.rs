@@ -12,11 +12,14 @@ use crate::terminal::finding_mark;
 /// A unit in a list.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ListedUnit {
-    model: String,
-    serial: String,
+    /// Its model.
+    pub model: String,
+    /// Its serial number.
+    pub serial: String,
     calibrations: usize,
     first: String,
-    last: String,
+    /// Date of its last calibration.
+    pub last: String,
     is_last_acceptable: bool,
     /// The serial number with a link to the page of the unit, if it has one.
     linked: String,
