@@ -182,6 +182,8 @@ pub(super) fn rival(rival: Rival) -> &'static str {
             Extension::Disturbance(Course::Yield) => "proof mass that yields to its force",
             Extension::Disturbance(Course::Time) => "bias that changes over the session",
             Extension::Disturbance(Course::TimeScale) => "scale that changes over the session",
+            Extension::Disturbance(Course::WarmUp) => "bias that warms up in each mounting",
+            Extension::Disturbance(Course::WarmUpScale) => "scale that warms up in each mounting",
             Extension::Disturbance(Course::Rise) => "difference after a rise and after a fall of the speed",
             Extension::Disturbance(Course::Memory) => "memory of earlier forces",
             Extension::Disturbance(Course::Turn) => "hysteresis: a bias by the sense of the last change of the force",

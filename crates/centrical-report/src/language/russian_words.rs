@@ -178,6 +178,8 @@ pub(super) fn rival(rival: Rival) -> &'static str {
             Extension::Disturbance(Course::Yield) => "чувствительная масса, податливая силе",
             Extension::Disturbance(Course::Time) => "изменение нуля за время эксперимента",
             Extension::Disturbance(Course::TimeScale) => "изменение масштаба за время эксперимента",
+            Extension::Disturbance(Course::WarmUp) => "прогрев: изменение нуля от начала каждой установки",
+            Extension::Disturbance(Course::WarmUpScale) => "прогрев: изменение масштаба от начала каждой установки",
             Extension::Disturbance(Course::Rise) => "различие после роста и после спада скорости",
             Extension::Disturbance(Course::Memory) => "память о прежних силах",
             Extension::Disturbance(Course::Turn) => "гистерезис: нуль по знаку последнего изменения силы",

@@ -167,6 +167,10 @@ pub enum Course {
     Time,
     /// The same times `f_i`: a scale that changes with time.
     TimeScale,
+    /// 1 on the first plateau of a mounting, half as much on each that follows: a unit that is switched on with each mounting.
+    WarmUp,
+    /// The same times `f_i`.
+    WarmUpScale,
     /// +1 after a rise of the speed, -1 after a fall.
     Rise,
     /// The specific force of the plateaus before, each half as much as the next.
@@ -179,7 +183,13 @@ impl Course {
     /// Whether it depends on what came before a plateau.
     fn is_of_history(self) -> bool {
         match self {
-            Self::Time | Self::TimeScale | Self::Rise | Self::Memory | Self::Turn => true,
+            Self::Time
+            | Self::TimeScale
+            | Self::WarmUp
+            | Self::WarmUpScale
+            | Self::Rise
+            | Self::Memory
+            | Self::Turn => true,
             Self::Spinning | Self::Speed | Self::SquaredSpeed | Self::FourthPowerOfSpeed | Self::Yield => false,
         }
     }

@@ -120,6 +120,8 @@ pub struct SetPoint {
 pub struct History {
     /// Place in the order of the session, -1/2 to 1/2.
     pub time: f64,
+    /// 1 on the first plateau of a mounting on the arm, half as much on each that follows: what is left of a warm-up.
+    pub warm_up: f64,
     /// +1 after a rise of the speed, -1 after a fall, 0 before the first.
     pub rise: f64,
     /// Nominal specific force of the plateaus before, each half as much as the next [m/s^2].

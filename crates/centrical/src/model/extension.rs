@@ -78,7 +78,7 @@ pub enum Difference {
 
 impl Extension {
     /// Every extension with its name as written in sessions and plans.
-    pub const NAMED: [(&'static str, Self); 35] = [
+    pub const NAMED: [(&'static str, Self); 37] = [
         ("elastic-turn-speed", Self::ElasticTurn(Law::Speed)),
         ("elastic-turn-load", Self::ElasticTurn(Law::Load)),
         ("arm-stretch-speed", Self::ArmStretch(Law::Speed)),
@@ -111,6 +111,8 @@ impl Extension {
         ("yield", Self::Disturbance(Course::Yield)),
         ("bias-drift", Self::Disturbance(Course::Time)),
         ("scale-drift", Self::Disturbance(Course::TimeScale)),
+        ("warm-up", Self::Disturbance(Course::WarmUp)),
+        ("warm-up-scale", Self::Disturbance(Course::WarmUpScale)),
         ("rise-fall", Self::Disturbance(Course::Rise)),
         ("memory", Self::Disturbance(Course::Memory)),
         ("hysteresis", Self::Disturbance(Course::Turn)),
@@ -291,6 +293,8 @@ fn disturbance(axis: usize, follows: Course) -> Parameter {
         Course::Yield => ("yield", "s^2", 5e-4 / Law::Load.full_scale()),
         Course::Time => ("bias_drift", "m/s^2", BIAS),
         Course::TimeScale => ("scale_drift", "1", 1e-3),
+        Course::WarmUp => ("warm_up", "m/s^2", BIAS),
+        Course::WarmUpScale => ("warm_up_scale", "1", 1e-3),
         Course::Rise => ("rise_fall", "m/s^2", BIAS),
         Course::Memory => ("memory", "1", 1e-3),
         Course::Turn => ("hysteresis", "m/s^2", BIAS),

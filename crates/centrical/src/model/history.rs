@@ -8,13 +8,14 @@ use super::experiment::{Experiment, History, STANDARD_GRAVITY, SetPoint};
 
 use super::nominal::nominal;
 
-/// The part of a plateau's force that is remembered on the next.
+/// The part of a plateau's force, or of a warm-up, that is left on the next.
 const REMEMBERED: f64 = 0.5;
 
 /// Fills in the history of every plateau of `experiment`, in the order of its set points.
 pub(super) fn fill(experiment: &mut Experiment) {
     let last = experiment.set_points.len().saturating_sub(1).max(1) as f64;
     let (mut memory, mut rise, mut previous, mut force) = (Vector3::zeros(), 0.0, None, None);
+    let mut warm_up = 0.0;
     for n in 0..experiment.set_points.len() {
         let set_point = experiment.set_points[n];
         let speed = set_point.omega.abs();
@@ -26,13 +27,19 @@ pub(super) fn fill(experiment: &mut Experiment) {
             Some(before) if speed < before => -1.0,
             Some(_) => rise,
         };
+        warm_up = match before {
+            _ if !experiment.is_on_arm(set_point.mounting) => 0.0,
+            None => 1.0,
+            Some(_) => REMEMBERED * warm_up,
+        };
         previous = Some((set_point.mounting, speed));
         let here = nominal(experiment, &set_point);
         // A unit that is mounted on the arm has been turned on the way there.
         let is_known = before.is_some() || !experiment.is_on_arm(set_point.mounting);
         let turn = force.filter(|_| is_known).map_or(Vector3::zeros(), |force: Vector3<f64>| (here - force).map(sense));
         force = Some(here);
-        experiment.set_points[n].history = History { time: n as f64 / last - 0.5, rise, memory, turn, repeats: None };
+        let time = n as f64 / last - 0.5;
+        experiment.set_points[n].history = History { time, warm_up, rise, memory, turn, repeats: None };
         memory = (memory + here) * REMEMBERED;
     }
     mark_repeated_rests(&mut experiment.set_points);

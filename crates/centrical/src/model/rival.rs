@@ -116,6 +116,8 @@ impl Rival {
                 Extension::Disturbance(Course::Yield) => "-M_ii f_i",
                 Extension::Disturbance(Course::Time) => "t",
                 Extension::Disturbance(Course::TimeScale) => "t f_i",
+                Extension::Disturbance(Course::WarmUp) => "2^-n on plateau n of a mounting",
+                Extension::Disturbance(Course::WarmUpScale) => "2^-n f_i on plateau n of a mounting",
                 Extension::Disturbance(Course::Rise) => "+1 after a rise of Omega, -1 after a fall",
                 Extension::Disturbance(Course::Memory) => "sum_n 2^-n f_i, n plateaus before",
                 Extension::Disturbance(Course::Turn) => "+1 after a rise of f_i, -1 after a fall",

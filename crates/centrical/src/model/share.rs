@@ -108,6 +108,8 @@ impl MeasurementModel {
             Course::Yield => -Nominal::of(&self.experiment, set_point).m[(axis, axis)] * f0(),
             Course::Time => history.time,
             Course::TimeScale => history.time * f0(),
+            Course::WarmUp => history.warm_up,
+            Course::WarmUpScale => history.warm_up * f0(),
             Course::Rise => history.rise,
             Course::Memory => history.memory[axis],
             Course::Turn => history.turn[axis],
