@@ -507,3 +507,36 @@ fn batches_are_compared_at_one_station() {
     let (code, text, _) = results.run(&ask);
     assert!(code == 1 && text.contains("no unit has the serial \"0\" of the batches, expected \"0000\"?"), "{text}");
 }
+
+/// What a longer error model has, a shorter one takes for zero: among eight calibrations with the longer one the ninth is left out and named.
+#[test]
+fn a_calibration_with_a_shorter_model_is_left_out() {
+    let results = Results::new();
+    let run = |arguments: &[&str]| {
+        let made = centrical().args(arguments).arg("-q").current_dir(results.path()).output().unwrap();
+        assert!(made.status.success(), "{made:?}");
+    };
+    run(&["reduce", example().to_str().unwrap(), "--out", "reduced"]);
+    let file = results.path().join("reduced/experiment.toml");
+    let text = fs::read_to_string(&file).unwrap();
+    let model = text.lines().find(|line| line.starts_with("error_model")).unwrap();
+    fs::write(&file, text.replace(model, "error_model = [\"kozlov-2017\", \"odd-quadratic\"]")).unwrap();
+    run(&["calibrate", "reduced", "--out", "longer"]);
+    let longer: Value = serde_json::from_slice(&fs::read(results.path().join("longer/result.json")).unwrap()).unwrap();
+    fs::remove_dir_all(results.path().join("longer")).unwrap();
+    fs::remove_dir_all(results.path().join("reduced")).unwrap();
+    for session in 0..9 {
+        let date = format!("{}-01-01", 2012 + session);
+        results.add(&format!("s{session}"), "0001", &date, |result| {
+            if session != 4 {
+                let of = result["session"].clone();
+                result.clone_from(&longer);
+                result["session"] = of;
+            }
+        });
+    }
+    let unit = results.document(&["unit", "."]);
+    assert_eq!(unit["sessions"].as_array().unwrap().len(), 8);
+    assert_eq!(unit["left_out"][0]["date"], "2016-01-01");
+    assert!(unit["incomplete"].is_null() && !unit["left_out"][0]["lacks"].as_array().unwrap().is_empty());
+}

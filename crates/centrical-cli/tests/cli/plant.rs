@@ -250,7 +250,7 @@ fn due_dates_of_all_units_stand_in_a_list() {
         *(if is_overdue { &mut overdue } else { &mut within }) += 1;
     }
     assert!(overdue > 0, "{overdue} {within}");
-    assert!(due.contains(&format!("of {UNITS} units: {overdue} overdue.")));
+    assert!(due.contains(&format!("of {UNITS} units, for compensated readings within 2000 µg: {overdue} overdue.")));
     assert!(page(folder, "index.html").contains("<a href=\"due.html\">"));
 }
 

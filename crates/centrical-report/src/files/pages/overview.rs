@@ -36,16 +36,16 @@ pub struct Overview {
     pub pages: BTreeMap<String, String>,
     /// Keys of the calibrations of each unit that has a page, by its file.
     pub units: BTreeMap<String, BTreeSet<String>>,
-    /// The same units as they are listed, if there is a limit that they may be due for.
-    pub with_limit: Option<Vec<(String, ListedUnit)>>,
+    /// The limit that the same units may be due for, if there is one [m/s^2], and the units as they are listed.
+    pub with_limit: Option<(f64, Vec<(String, ListedUnit)>)>,
 }
 
 impl Overview {
     /// The list of due dates, by the page of each unit or its beginning; `None` without a limit, or where a page does not say.
     pub fn due(&self, page: impl Fn(&str) -> Option<String>) -> Option<String> {
-        let units = self.with_limit.as_ref()?.iter();
-        let due = units.map(|(file, unit)| Some((unit, UnitDue::read(&page(file)?)?)));
-        Some(history_due_page(due.collect::<Option<_>>()?, Date::today()))
+        let (limit, units) = self.with_limit.as_ref()?;
+        let due = units.iter().map(|(file, unit)| Some((unit, UnitDue::read(&page(file)?)?)));
+        Some(history_due_page(due.collect::<Option<_>>()?, *limit, Date::today()))
     }
 
     /// Reads the values of all calibrations. `progress` is asked again and again.
@@ -66,10 +66,10 @@ impl Overview {
         advance(progress, 0)?;
         let models = models(calibrations, listed, &asked, request, &mut pages);
         advance(progress, 0)?;
-        let with_limit = request.limit.map(|_| {
+        let with_limit = request.limit.map(|limit| {
             let file = |unit: &ListedUnit| PageKind::Unit.file(&[&unit.model, &unit.serial]);
             let all = listed.units(|_| true).into_iter().map(|unit| (file(&unit), unit));
-            all.filter(|(file, _)| units.contains_key(file)).collect()
+            (limit, all.filter(|(file, _)| units.contains_key(file)).collect())
         });
         let due = with_limit.as_ref().map(|_| DUE_PAGE);
         let index = history_index(&list, &models, &stations, due, |file| units.contains_key(file));

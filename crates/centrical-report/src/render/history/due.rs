@@ -2,11 +2,11 @@
 
 use std::fmt::Write;
 
-use centrical_session::{Date, UnitHistoryReport};
+use centrical_session::{Date, MICRO_G, UnitHistoryReport};
 
 use super::frame::{linked_serial, opening, page};
 use super::units::ListedUnit;
-use crate::number::counted;
+use crate::number::{counted, two_digits};
 use crate::plot::Escaped;
 
 /// What the history of a unit says of a limit.
@@ -73,17 +73,18 @@ const DUE: &str = "due";
 const AFTER: &str = "due after";
 const NOT_KNOWN: &str = "not known";
 
-/// The list of units with what is said of each, on a day: the overdue ones first, then by day.
-pub fn history_due_page(mut units: Vec<(&ListedUnit, UnitDue)>, on: Date) -> String {
+/// The list of units with what is said of each for a `limit` [m/s^2], on a day: the overdue ones first, then by day.
+pub fn history_due_page(mut units: Vec<(&ListedUnit, UnitDue)>, limit: f64, on: Date) -> String {
     units.sort_by_key(|(_, due)| *due);
     let overdue = units.iter().filter(|(_, due)| matches!(due, UnitDue::Overdue(_))).count();
     let mut body = opening("Store", "Due dates");
     let _ = writeln!(
         body,
-        "<p>On {on}, of {}: {overdue} overdue.</p>\n<div class=\"scroll\"><table class=\"sortable\"><thead><tr><th scope=\"col\">serial</th>\
-         <th scope=\"col\">model</th><th scope=\"col\">last calibration</th><th scope=\"col\">within the limit</th>\
+        "<p>On {on}, of {}, for compensated readings within {} µg: {overdue} overdue.</p>\n<div class=\"scroll\"><table class=\"sortable\"><thead><tr><th scope=\"col\">serial</th>\
+         <th scope=\"col\">model</th><th scope=\"col\">last calibration</th><th scope=\"col\">state</th>\
          <th scope=\"col\">day</th></tr></thead><tbody>",
-        counted(units.len(), "unit")
+        counted(units.len(), "unit"),
+        two_digits(limit / MICRO_G)
     );
     for (unit, due) in units {
         let (word, day) = due.words();

@@ -92,8 +92,12 @@ fn verdict(screen: &mut Screen, report: &UnitHistoryReport) {
         );
         screen.marked(Emphasis::NotAcceptable, "AHEAD", &words);
     }
-    for LeftOutSession { session, lacks } in &report.incomplete {
+    for LeftOutSession { session, lacks } in report.incomplete.iter().take(NAMES) {
         let words = format!("{}, {}: it does not determine {}", session.date, session.source, short_list(lacks));
+        screen.marked(Emphasis::Warning, "INCOMPLETE", &words);
+    }
+    if report.incomplete.len() > NAMES {
+        let words = format!("and {} more", counted(report.incomplete.len() - NAMES, "calibration"));
         screen.marked(Emphasis::Warning, "INCOMPLETE", &words);
     }
     for session in &report.left_out {

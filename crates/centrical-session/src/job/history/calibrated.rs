@@ -179,6 +179,11 @@ impl Calibrated {
         }
     }
 
+    /// The parameters of its unit, determined or not.
+    pub fn listed(&self) -> impl Iterator<Item = &str> {
+        self.parameters.iter().filter(|p| p.is_of_unit).map(|p| p.name.as_str())
+    }
+
     /// The parameters of its unit that it determines.
     pub fn determined(&self) -> impl Iterator<Item = &str> {
         let own = self.parameters.iter().zip(&self.values).filter(|(p, value)| p.is_of_unit && value.is_finite());

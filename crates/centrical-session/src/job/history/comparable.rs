@@ -38,29 +38,34 @@ impl ComparedUnits {
 fn left_out(units: &[Vec<Calibrated>]) -> Vec<LeftOutSession> {
     let mut lists = Lists::default();
     let all = || units.iter().flatten();
-    let determined: Vec<Arc<BTreeSet<usize>>> = all().map(|calibrated| lists.determined(calibrated)).collect();
+    let determined: Vec<NumberedNames> = all().map(|calibrated| lists.of(calibrated.determined())).collect();
+    let names = most_in_common(&determined, None);
+    let with_lacks = all().zip(&determined).map(|(calibrated, set)| (calibrated, lists.missing(&names, set)));
+    let left_out = with_lacks.filter(|(_, lacks)| !lacks.is_empty());
+    left_out.map(|(calibrated, lacks)| LeftOutSession { session: calibrated.past(), lacks }).collect()
+}
+
+/// The names that most estimates are of: names times the `sets` that have them all; only names `within` a set count, if there is one.
+fn most_in_common(sets: &[NumberedNames], within: Option<&NumberedNames>) -> BTreeSet<usize> {
     let mut counts: HashMap<&BTreeSet<usize>, usize> = HashMap::new();
-    for set in &determined {
+    for set in sets {
         *counts.entry(set.as_ref()).or_default() += 1;
     }
     let number = |names: &BTreeSet<usize>| -> usize {
         counts.iter().filter(|(set, _)| names.is_subset(set)).map(|(_, count)| count).sum()
     };
-    let candidates: BTreeSet<&BTreeSet<usize>> = counts.keys().copied().collect();
+    let common = |set: &&BTreeSet<usize>| within.map_or_else(|| (*set).clone(), |within| *set & within.as_ref());
+    let candidates: BTreeSet<BTreeSet<usize>> = counts.keys().map(common).collect();
     let best = candidates.into_iter().max_by_key(|names| {
         let number = number(names);
         (number * names.len(), number)
     });
-    let Some(names) = best else { return Vec::new() };
-    let lacks = |set: &BTreeSet<usize>| -> Vec<String> {
-        names.difference(set).map(|name| lists.names[*name].clone()).collect()
-    };
-    let of_all = all().zip(&determined).map(|(calibrated, set)| (calibrated, lacks(set)));
-    let of_some = of_all.filter(|(_, lacks)| !lacks.is_empty());
-    of_some.map(|(calibrated, lacks)| LeftOutSession { session: calibrated.past(), lacks }).collect()
+    best.unwrap_or_default()
 }
 
-/// The calibrations of one unit that are compared, by the parameters that two or more of them determine.
+/// The calibrations of one unit that are compared, by the parameters that two or more of them determine. What a longer error model has, a
+/// shorter one takes for zero, and its other coefficients are not the same quantities: of calibrations with other models those are compared that have
+/// the most parameters in common, determined or not.
 pub(super) struct ComparedSessions<'a> {
     /// Those that determine one or more of the parameters, in their order.
     pub calibrations: Vec<&'a Calibrated>,
@@ -68,22 +73,33 @@ pub(super) struct ComparedSessions<'a> {
     pub names: Vec<String>,
     /// Those of `calibrations` that lack some of the parameters.
     pub incomplete: Vec<LeftOutSession>,
-    /// Those that lack all of them.
+    /// Those that lack all of them, or have another model.
     pub left_out: Vec<LeftOutSession>,
 }
 
 impl<'a> ComparedSessions<'a> {
     pub fn of(all: &'a [Calibrated]) -> Self {
+        let mut lists = Lists::default();
+        let listed: Vec<NumberedNames> = all.iter().map(|calibrated| lists.of(calibrated.listed())).collect();
+        let in_common = most_in_common(&listed, listed.last());
+        let (alike, others): (Vec<_>, Vec<_>) =
+            all.iter().zip(&listed).partition(|(_, listed)| in_common.is_subset(listed));
+        let of_another_model = |(calibrated, listed): (&Calibrated, &NumberedNames)| LeftOutSession {
+            session: calibrated.past(),
+            lacks: lists.missing(&in_common, listed),
+        };
+        let mut left_out: Vec<LeftOutSession> = others.into_iter().map(of_another_model).collect();
+        let all: Vec<&Calibrated> = alike.into_iter().map(|(calibrated, _)| calibrated).collect();
         let mut counts: HashMap<&str, usize> = HashMap::new();
-        all.iter().flat_map(Calibrated::determined).for_each(|name| *counts.entry(name).or_default() += 1);
+        all.iter().flat_map(|c| c.determined()).for_each(|name| *counts.entry(name).or_default() += 1);
         let mut names: Vec<String> = Vec::new();
-        for name in all.iter().rev().flat_map(Calibrated::determined) {
+        for name in all.iter().rev().flat_map(|c| c.determined()) {
             // Each name is met once here.
             if counts.remove(name).is_some_and(|count| count > 1) {
                 names.push(name.to_owned());
             }
         }
-        let (mut calibrations, mut incomplete, mut left_out) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut calibrations, mut incomplete) = (Vec::new(), Vec::new());
         for calibrated in all {
             let lacks: Vec<String> = names.iter().filter(|name| calibrated.place(name).is_none()).cloned().collect();
             let has_some = lacks.len() < names.len();
@@ -99,19 +115,21 @@ impl<'a> ComparedSessions<'a> {
     }
 }
 
+/// The names of parameters, by their numbers.
+type NumberedNames = Arc<BTreeSet<usize>>;
+
 /// The parameters of units that were met, numbered.
 #[derive(Default)]
 struct Lists {
     names: Vec<String>,
     numbers: HashMap<String, usize>,
     /// The sets that were met: there are a few among thousands of calibrations.
-    sets: HashMap<BTreeSet<usize>, Arc<BTreeSet<usize>>>,
+    sets: HashMap<BTreeSet<usize>, NumberedNames>,
 }
 
 impl Lists {
-    /// The parameters of its unit that a calibration determines.
-    fn determined(&mut self, calibrated: &Calibrated) -> Arc<BTreeSet<usize>> {
-        let set: BTreeSet<usize> = calibrated.determined().map(|name| self.number(name)).collect();
+    fn of<'n>(&mut self, names: impl Iterator<Item = &'n str>) -> NumberedNames {
+        let set: BTreeSet<usize> = names.map(|name| self.number(name)).collect();
         Arc::clone(self.sets.entry(set.clone()).or_insert_with(|| Arc::new(set)))
     }
 
@@ -122,5 +140,10 @@ impl Lists {
         self.names.push(name.to_owned());
         self.numbers.insert(name.to_owned(), self.names.len() - 1);
         self.names.len() - 1
+    }
+
+    /// The names of `names` that are not in `set`.
+    fn missing(&self, names: &BTreeSet<usize>, set: &BTreeSet<usize>) -> Vec<String> {
+        names.difference(set).map(|number| self.names[*number].clone()).collect()
     }
 }

@@ -138,8 +138,8 @@ fn not_in(last: &Calibrated, calibrations: &[&Calibrated]) -> Vec<String> {
 
 /// Whether `last` determines each term that a calibration does.
 fn is_part(calibrated: &Calibrated, last: &Calibrated) -> bool {
-    let determined = calibrated.terms.iter().flatten().filter(|(name, _)| calibrated.place(name).is_some());
-    { determined }.all(|(name, _)| last.place(name).is_some())
+    let is_determined = |name: &str| calibrated.place(name).is_some();
+    calibrated.terms.iter().flatten().all(|(name, _)| !is_determined(name) || last.place(name).is_some())
 }
 
 /// Those of `calibrations` that determine all of a combination.
