@@ -85,7 +85,7 @@ pub struct UnitHistoryReport {
     pub limit: Option<f64>,
     /// The day that the next is of: that of the last calibration or a later one.
     pub on: Date,
-    /// Whether that is later than today: a wrong clock, or day and month exchanged.
+    /// Whether the last date is later than tomorrow: a wrong clock, or day and month exchanged.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub ahead: bool,
     /// Whether a reading compensated by the last calibration is within the limit after a switch-on that day; null without a limit, and where

@@ -115,7 +115,8 @@ pub fn unit_history(
             .filter(|_| are_all || due.is_some())
             .map(|_| due.as_ref().is_none_or(|due| due.date > on)),
         on,
-        ahead: last.date > Date::today(),
+        // A station may be east of here.
+        ahead: last.date > Date::today().after(1.0),
         due,
         due_after: request.limit.filter(|_| are_all).map(|_| last.date.after(HORIZON * DAYS_IN_YEAR)),
         readings,
