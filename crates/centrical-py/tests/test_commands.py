@@ -314,7 +314,7 @@ def test_pages_of_a_store(executable, store, tmp_path):
     pages = ct.write_pages(store, tmp_path / "python", limit="300 ug", accepted=4)
     command = [executable, "history", "page", store, "--out", tmp_path / "command", "--limit", "300 ug", "--accepted", "4"]
     subprocess.run(command, check=True, capture_output=True)
-    assert pages == assert_same_files(tmp_path) == 5
+    assert pages == assert_same_files(tmp_path) == 6
 
 
 def assert_same_files(folder):

@@ -3,7 +3,7 @@
 //! With the whitened design `W J = Q R` at the estimate, a change `dy` of the readings moves the estimates by
 //! `K dy`, `K = R^-1 Q^T W`. `K` is applied by reflections and back substitution and never formed.
 
-use nalgebra::{DMatrix, DVector, Vector3};
+use nalgebra::{DMatrix, DVector, DVectorView, Vector3};
 
 use super::assembly::Assembly;
 use super::data::Data;
@@ -87,8 +87,8 @@ impl Gain {
     }
 
     /// Whitened residuals, three per observation.
-    pub(crate) fn whitened_residuals(&self) -> DVector<f64> {
-        self.residuals.rows(0, 3 * self.whiteners.len()).into_owned()
+    pub(crate) fn whitened_residuals(&self) -> DVectorView<'_, f64> {
+        self.residuals.rows(0, 3 * self.whiteners.len())
     }
 
     /// `Q`: the rows of the observations in an orthonormal basis of the fitted columns. The share of the readings in their own

@@ -86,14 +86,18 @@ impl Calibration<'_> {
         let explained = explained.map(|rival| (&rival.columns, rival.seen.inverse()));
         let chi_squared = self.fit().chi_squared - statistic;
         let left = self.fit().degrees_of_freedom.saturating_sub(rank + 1);
+        let observations = self.data().observations();
+        let all: Vec<usize> = (0..observations.len()).collect();
+        let of_mounting = self.by_mounting();
         let mut list = Vec::new();
         for &trend in trends {
-            let values: Vec<f64> =
-                self.data().observations().iter().map(|o| trend.value(experiment, o.set_point)).collect();
-            let largest = values.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
-            let acting: Vec<usize> = (0..values.len()).filter(|&n| values[n] != 0.0).collect();
+            let value = |n: usize| trend.value(experiment, observations[n].set_point);
+            // A step in one of many mountings is no question to the plateaus of the others.
+            let asked = if let Trend::Mounting(m) = trend { &of_mounting[m] } else { &all };
+            let acting: Vec<usize> = asked.iter().copied().filter(|&n| value(n) != 0.0).collect();
+            let largest = acting.iter().fold(0.0_f64, |most, &n| most.max(value(n).abs()));
             for axis in 0..3 {
-                let columns = Columns::new(gain, acting.clone(), 1, |n, _| Vector3::ith(axis, values[n] / largest));
+                let columns = Columns::new(gain, acting.clone(), 1, |n, _| Vector3::ith(axis, value(n) / largest));
                 let (redundancy, along) = match &explained {
                     Some((other, inverse)) => columns.beside(other, inverse),
                     None => (columns.redundancy(), columns.along.clone()),
@@ -120,6 +124,16 @@ impl Calibration<'_> {
         let family_wise = holm(list.iter().map(|pattern| pattern.probability));
         list.iter_mut().zip(family_wise).for_each(|(pattern, probability)| pattern.family_wise = probability);
         Ok(list)
+    }
+
+    /// The observations of each mounting.
+    fn by_mounting(&self) -> Vec<Vec<usize>> {
+        let experiment = self.data().model().experiment();
+        let mut of_mounting = vec![Vec::new(); experiment.mountings.len()];
+        for (n, observation) in self.data().observations().iter().enumerate() {
+            of_mounting[experiment.set_points[observation.set_point].mounting].push(n);
+        }
+        of_mounting
     }
 }
 

@@ -85,7 +85,7 @@ impl Calibration<'_> {
         let (fit, experiment) = (self.fit(), self.data().model().experiment());
         let observations = self.data().observations();
         let blocks = Blocks {
-            residuals: gain.whitened_residuals(),
+            residuals: gain.whitened_residuals().into_owned(),
             basis: gain.basis(),
             chi_squared: fit.chi_squared,
             degrees_of_freedom: fit.degrees_of_freedom,

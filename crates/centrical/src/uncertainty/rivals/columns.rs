@@ -105,7 +105,7 @@ impl Columns {
         let mut product = DMatrix::zeros(self.z.ncols(), other.z.ncols());
         let mut there = 0;
         for (here, n) in self.acting.iter().enumerate() {
-            there += other.acting[there..].iter().take_while(|m| *m < n).count();
+            there += other.acting[there..].partition_point(|m| m < n);
             if other.acting.get(there) == Some(n) {
                 product += self.z.rows(3 * here, 3).tr_mul(&other.z.rows(3 * there, 3));
             }
