@@ -3,6 +3,7 @@
 
 use std::f64::consts::TAU;
 use std::fs;
+use std::path::PathBuf;
 
 use crate::session::Copy;
 
@@ -274,6 +275,35 @@ fn usage() {
     assert!(long.len() < 1200 && long.contains("expected MOUNTING:PLATEAU such as 4:3"), "{long}");
 }
 
+/// The example as a table of means, whose readings are then changed.
+struct Means {
+    file: PathBuf,
+    table: String,
+}
+
+impl Means {
+    fn of(copy: &Copy) -> Self {
+        let session = copy.session();
+        assert!(copy.run(&["reduce", session.to_str().unwrap(), "--out", "reduced"]).status.success());
+        let file = copy.out().join("reduced/plateaus.csv");
+        Self { table: fs::read_to_string(&file).unwrap(), file }
+    }
+
+    /// Writes the means with those of newtonometer `axis` times `factor`, of one mounting or of all.
+    fn write_scaled(&self, axis: usize, mounting: Option<usize>, factor: f64) {
+        let (header, rows) = self.table.split_once('\n').unwrap();
+        let mean = header.split(',').position(|name| name == format!("mean_{axis}")).expect("a column of means");
+        let scaled = |row: &str| {
+            let mut cells: Vec<String> = row.split(',').map(str::to_owned).collect();
+            if mounting.is_none_or(|mounting| cells[0] == mounting.to_string()) {
+                cells[mean] = (cells[mean].parse::<f64>().unwrap() * factor).to_string();
+            }
+            cells.join(",") + "\n"
+        };
+        fs::write(&self.file, format!("{header}\n{}", rows.lines().map(scaled).collect::<String>())).unwrap();
+    }
+}
+
 /// Means of plateaus in another unit, or with the sign of an axis reversed, have no samples to ask: their scale says so.
 #[test]
 fn means_in_another_unit_or_sign_are_refused() {
@@ -283,18 +313,7 @@ fn means_in_another_unit_or_sign_are_refused() {
         (0.5, "halved", "), expected"),
     ] {
         let copy = Copy::new();
-        let session = copy.session();
-        assert!(copy.run(&["reduce", session.to_str().unwrap(), "--out", "reduced"]).status.success());
-        let file = copy.out().join("reduced/plateaus.csv");
-        let table = fs::read_to_string(&file).unwrap();
-        let names: Vec<&str> = table.lines().next().unwrap().split(',').collect();
-        let mean = names.iter().position(|name| *name == "mean_2").expect("a column of means");
-        let scaled = |line: &str| {
-            let mut cells: Vec<String> = line.split(',').map(str::to_owned).collect();
-            cells[mean] = cells[mean].parse::<f64>().map_or(cells[mean].clone(), |value| (factor * value).to_string());
-            cells.join(",") + "\n"
-        };
-        fs::write(&file, table.lines().map(scaled).collect::<String>()).unwrap();
+        Means::of(&copy).write_scaled(2, None, factor);
         let run = copy.run(&["calibrate", "reduced", "--out", "out"]);
         let message = String::from_utf8(run.stderr).unwrap();
         assert_eq!(run.status.code(), Some(2), "{name}: {message}");
@@ -327,22 +346,10 @@ fn what_cannot_be_done_is_refused() {
 #[test]
 fn one_channel_of_one_mounting_in_another_unit_is_named() {
     let copy = Copy::new();
-    let session = copy.session();
-    assert!(copy.run(&["reduce", session.to_str().unwrap(), "--out", "reduced"]).status.success());
-    let file = copy.out().join("reduced/plateaus.csv");
-    let table = fs::read_to_string(&file).unwrap();
-    let names: Vec<&str> = table.lines().next().unwrap().split(',').collect();
+    let means = Means::of(&copy);
     let mut named = 0;
     for (mounting, axis) in (1..=12).flat_map(|mounting| [1, 2, 3].map(|axis| (mounting, axis))) {
-        let mean = names.iter().position(|name| *name == format!("mean_{axis}")).expect("a column of means");
-        let scaled = |line: &str| {
-            let mut cells: Vec<String> = line.split(',').map(str::to_owned).collect();
-            if cells[0] == mounting.to_string() {
-                cells[mean] = (cells[mean].parse::<f64>().unwrap() / 9.80665).to_string();
-            }
-            cells.join(",") + "\n"
-        };
-        fs::write(&file, table.lines().map(scaled).collect::<String>()).unwrap();
+        means.write_scaled(axis, Some(mounting), 1.0 / 9.80665);
         let run = copy.run(&["calibrate", "reduced", "--out", "out", "--quiet"]);
         let message = String::from_utf8(run.stderr).unwrap();
         assert_ne!(run.status.code(), Some(0), "{mounting} {axis}");

@@ -120,7 +120,7 @@ pub struct SetPoint {
 pub struct History {
     /// Place in the order of the session, -1/2 to 1/2.
     pub time: f64,
-    /// 1 on the first plateau of a mounting on the arm, half as much on each that follows: what is left of a warm-up.
+    /// The remainder of a warm-up: 1 on the first plateau of a mounting on the arm, and half of the preceding value on each further one.
     pub warm_up: f64,
     /// +1 after a rise of the speed, -1 after a fall, 0 before the first.
     pub rise: f64,

@@ -92,7 +92,7 @@ impl Calibration<'_> {
         let mut list = Vec::new();
         for &trend in trends {
             let value = |n: usize| trend.value(experiment, observations[n].set_point);
-            // A step in one of many mountings is no question to the plateaus of the others.
+            // A step in one mounting acts on its own plateaus alone: with many mountings the others would take most of the time.
             let asked = if let Trend::Mounting(m) = trend { &of_mounting[m] } else { &all };
             let acting: Vec<usize> = asked.iter().copied().filter(|&n| value(n) != 0.0).collect();
             let largest = acting.iter().fold(0.0_f64, |most, &n| most.max(value(n).abs()));

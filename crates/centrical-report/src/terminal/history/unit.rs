@@ -132,15 +132,18 @@ fn sameness(screen: &mut Screen, report: &UnitHistoryReport) {
             test.degrees_of_freedom,
             chance(test.probability)
         );
-        let (emphasis, mark) = if report.differs() {
-            (Emphasis::Warning, "DIFFERS")
+        let (emphasis, mark, why) = if report.differs() {
+            (Emphasis::Warning, "DIFFERS", "")
         } else if report.agrees_too_well() {
-            (Emphasis::Warning, "TOO ALIKE")
+            (
+                Emphasis::Warning,
+                "TOO ALIKE",
+                "; the calibrations agree better than independent ones do: results of the same records, or uncertainties that are too large",
+            )
         } else {
-            (Emphasis::Acceptable, "THE SAME")
+            (Emphasis::Acceptable, "THE SAME", "")
         };
-        let why = "; the calibrations agree better than independent ones do: results of the same records, or uncertainties that are too large";
-        screen.marked(emphasis, mark, &if mark == "TOO ALIKE" { words + why } else { words });
+        screen.marked(emphasis, mark, &(words + why));
     }
     if let Some(session) = report.deviating() {
         let words = format!(

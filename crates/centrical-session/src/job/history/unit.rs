@@ -241,7 +241,7 @@ impl Job<'_> {
         let rests_on_priors = self.rests_on_priors(name);
         let all = self.combination(&single(name), if rests_on_priors { Basis::Stated } else { Basis::Data })?;
         let (own, between) = (&all[0], self.between(&all).filter(|_| !rests_on_priors));
-        let last = *with_all(self.own, &single(name)).last()?;
+        let last = self.own.iter().rev().find(|calibrated| calibrated.place(name).is_some())?;
         let place = last.place(name)?;
         let evolution = between.as_ref().and_then(|between| self.evolution(&all, between));
         let slope = evolution.as_ref().and_then(Evolution::slope);
