@@ -78,6 +78,10 @@ impl Layout {
     /// such words. A row that is commented out has a number behind its `#`. A word alone ends with `!` or `?`.
     #[cold]
     pub fn is_failed_row(&self, line: &[u8]) -> bool {
+        // The first bytes show most comments for what they are: a packed file may have a billion of them.
+        if !matches!(line.trim_ascii_start(), [b'#', next, ..] if !matches!(next, b' ' | b'\t')) {
+            return false;
+        }
         let Ok(texts) = self.texts(line) else { return false };
         let Some((first, others)) = texts.split_first().filter(|_| texts.len() == self.wanted.len()) else {
             return false;
