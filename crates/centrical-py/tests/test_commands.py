@@ -294,6 +294,7 @@ def test_what_a_history_is_not_asked(store):
         (lambda: ct.history([], "unit"), "results: found none, expected a store"),
         (lambda: ct.history([store, store], "list"), "results: found 2, expected one store"),
         (lambda: ct.history(store), "no such calibrations, expected calibrations of one unit"),
+        (lambda: ct.history(store, serial="0001", on="2020-01-01"), "found on = 2020-01-01, expected "),
         (lambda: ct.control_chart("df_1", store, limits=(0.0, -1.0)), "deviation: found -1 about 0, expected"),
         (lambda: ct.control_chart("df_9", store), "no session that determines df_9"),
     ):

@@ -122,7 +122,8 @@ pub fn history_unit(
         let refuse = |day: &str| refused(name, format!("found {day:?}, expected a day such as 2026-10-05"));
         day.map(|day| day.parse::<Date>().map_err(|_| refuse(&day))).transpose()
     };
-    let on = Some(day("on", on)?.unwrap_or_else(Date::today));
+    let asked = day("on", on)?;
+    let on = Some(asked.unwrap_or_else(Date::today));
     let request = UnitHistoryRequest { trend, until: day("until", until)?, limit, on, coverage: confidence };
     let results = given(results)?;
     progress::run(py, &None, |work| {
@@ -133,6 +134,10 @@ pub fn history_unit(
         let is_meant = |unit: &str| serial.as_deref().is_none_or(|wanted| wanted == unit);
         let (own, others): (Vec<_>, Vec<_>) = units.into_iter().partition(|unit| is_meant(&unit[0].unit_serial));
         let [own] = own.as_slice() else { return Err(missing(&results, "calibrations of one unit")) };
+        if let Some((on, last)) = asked.zip(own.last()).filter(|(on, last)| *on < last.date) {
+            let expected = format!("{}, the day of the last calibration, or a later one", last.date);
+            return Err(Error::content(&results[0], Place::Whole, format!("on = {on}"), expected));
+        }
         let others: Vec<_> = others.into_iter().filter(|unit| unit[0].unit_model == own[0].unit_model).collect();
         let report = unit_history(own, &others, request)
             .ok_or_else(|| missing(&results, "two calibrations of the unit or more"))?;

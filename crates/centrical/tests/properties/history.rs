@@ -434,12 +434,12 @@ fn units_that_drift_are_found_among_others() {
     assert_eq!((drifting.contains(&7), scattering), (true, vec![31]));
 }
 
-/// With fewer units than parameters, and one of them far off, sound ones are called outlying in one plant of twenty too; more than 12
-/// of 100 in two cases of a thousand.
+/// With fewer units than parameters, and one of them far off, sound ones are called outlying in one plant of twenty too; more than 9
+/// of 60 in one case of a thousand.
 #[test]
 fn few_units_are_not_called_outlying_more_often() {
     let (mut random, factor) = (Random::new(99), DMatrix::identity(23, 23));
-    let false_findings = (0..100).filter(|seed| {
+    let false_findings = (0..60).filter(|seed| {
         let mut values = plant(14, &factor, &mut random);
         values[(7, 3)] += 20.0;
         let units = alike(&values, *seed);
@@ -447,7 +447,7 @@ fn few_units_are_not_called_outlying_more_often() {
         units.iter().enumerate().any(|(n, unit)| n != 7 && unit.probability < 0.05)
     });
     let false_findings = false_findings.count();
-    assert!(false_findings <= 12, "{false_findings}");
+    assert!(false_findings <= 9, "{false_findings}");
 }
 
 /// Units of these numbers of sessions in turn, each unequally well known, whose errors go together, and whose own scatter does not; the first
@@ -495,10 +495,10 @@ const LARGEST: f64 = 3.0;
 
 /// Whether the scatter of units is nothing beside the errors of a session, as large, or much larger: units of one session are not called
 /// outlying for their larger errors, nor others in the presence of three that are; those are found. Differences of sessions correct what they
-/// state amiss. More than 5 of 24 plants with a false finding come in one case of a thousand.
+/// state amiss. More than 4 of 16 plants with a false finding come in one case of a thousand.
 #[test]
 fn units_with_few_or_poor_sessions_are_not_called_outlying() {
-    const PLANTS: u64 = 24;
+    const PLANTS: u64 = 16;
     let several = [1, 2, 3, 8].as_slice();
     let kinds = [
         (20, several, 1.0, 0, false),
@@ -513,7 +513,7 @@ fn units_with_few_or_poor_sessions_are_not_called_outlying() {
         let found = |seed| found_among_unequal(units, counts, scatter, planted, amiss, seed);
         let plants: Vec<Vec<usize>> = (0..PLANTS).map(found).collect();
         let false_findings = plants.iter().filter(|found| found.iter().any(|unit| *unit >= planted)).count();
-        assert!(false_findings <= 5, "{units} units of {counts:?}, {scatter}, {planted}, {amiss}: {false_findings}");
+        assert!(false_findings <= 4, "{units} units of {counts:?}, {scatter}, {planted}, {amiss}: {false_findings}");
         let found: usize = plants.iter().flatten().filter(|unit| **unit < planted).count();
         let all = planted * plants.len();
         assert!(found * 10 >= all * 9, "{units} units, {scatter}, {amiss}: {found} of {all}");

@@ -10,7 +10,7 @@ use nalgebra::Vector3;
 
 use crate::common::{Random, experiment, kozlov, observations, truth};
 
-const RUNS: usize = 150;
+const RUNS: usize = 80;
 
 /// The usual arm, or none, with rests of a cube in this many switch-ons; attitudes are known to `uncertainty` [rad] or free.
 fn with_cube(has_arm: bool, uncertainty: Option<f64>, switch_ons: usize) -> Experiment {

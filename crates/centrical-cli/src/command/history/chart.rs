@@ -53,8 +53,9 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
         (Some(centre), Some(deviation)) if centre.is_finite() && deviation > 0.0 && deviation.is_finite() => {
             ChartLimits::Stated(centre, deviation)
         }
-        (Some(_), Some(deviation)) => {
-            return Err(choice.refuse(format!("--deviation {deviation}"), "a finite centre and a positive deviation"));
+        (Some(centre), Some(deviation)) => {
+            let found = format!("--centre {centre} --deviation {deviation}");
+            return Err(choice.refuse(found, "a finite centre and a positive finite deviation"));
         }
         _ => ChartLimits::Accepted(arguments.accepted),
     };
