@@ -42,6 +42,16 @@ fn the_record_in_another_unit_is_named() {
     }
 }
 
+/// One newtonometer alone: no other unit fits the record, and its file is the one that is there.
+#[test]
+fn a_column_in_another_unit_is_refused_in_its_record() {
+    let copy = Copy::new();
+    let record = changed(&copy, "a.csv", |[x, y, z]| [x / 9.80665, y, z]);
+    let message = refused(&copy, &[&record, "--out", "out"]);
+    assert!(message.starts_with("centrical: a.csv: found readings of 0.10"), "{message}");
+    assert!(message.contains("(G0_11 = -0.89") && message.contains("), as if in g, expected 0.7 to 1.3"), "{message}");
+}
+
 #[test]
 fn equal_columns_are_named() {
     let copy = Copy::new();

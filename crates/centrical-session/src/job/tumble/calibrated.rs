@@ -12,7 +12,9 @@ use super::request::TumbleRequest;
 use super::session_text::{ATTITUDES, TABLE, session_text};
 use crate::document::{CalibrationResult, Method};
 use crate::error::{Error, Place};
-use crate::experiment::{EXPERIMENT_FILE, Folder, Session, refuse_another_session, write_attitudes, write_plateaus};
+use crate::experiment::{
+    EXPERIMENT_FILE, Folder, RestSource, Session, refuse_another_session, write_attitudes, write_plateaus,
+};
 use crate::job::calibrate::calibrate_reduced;
 use crate::job::noise::Series;
 use crate::job::reduce::{find_rests, refuse_repeated_rests};
@@ -83,7 +85,7 @@ pub fn tumble(request: &TumbleRequest, folder: &Path, progress: OnProgress) -> R
         Ok(())
     })?;
     refuse_repeated_rests(&session, &reduced, request.files.last().unwrap_or(&session.file))?;
-    let result = calibrate_reduced(&session, &reduced, Method::Exact, progress)?;
+    let result = calibrate_reduced(&blaming_record(&session, request), &reduced, Method::Exact, progress)?;
     Ok(Tumble { session, text, reduced, result })
 }
 
@@ -104,6 +106,16 @@ impl Tumble {
         write_whole(experiment, self.text.as_bytes())?;
         self.result.write(result)
     }
+}
+
+/// The session with the record as its file in messages: its own files are still to be written.
+fn blaming_record(session: &Session, request: &TumbleRequest) -> Session {
+    let mut blaming = session.clone();
+    blaming.file = first(request);
+    for table in &mut blaming.rest_tables {
+        table.source = RestSource::Table(first(request));
+    }
+    blaming
 }
 
 /// Refuses a record that is given twice: its noise would count for half.
