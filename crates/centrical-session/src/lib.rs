@@ -87,8 +87,8 @@ pub use job::{
 };
 pub use job::{
     Calibrated, CalibratedParameter, ChartLimits, ChartRequest, ComparedUnits, NoChart, ParameterLimits, Past, RuleSet,
-    UnitHistoryRequest, UnitsHistoryRequest, by_unit, chart, history_up_to, read_batches, read_calibrations,
-    read_limits, station_history, unit_history, unit_means, units_history,
+    UnitHistoryRequest, UnitsHistoryRequest, by_unit, chart, expected_day, history_up_to, read_batches,
+    read_calibrations, read_limits, station_history, unit_history, unit_means, units_history,
 };
 pub use laboratory::{
     Address, Certificate, Condition, Contact, Customer, Decision, DecisionRule, Environment, Item, Laboratory,

@@ -29,5 +29,5 @@ pub use self::list::list_store;
 pub use self::read::{Past, by_unit, other_output, read_calibrations};
 pub use self::results::collect_results;
 pub use self::station::station_history;
-pub use self::unit::{UnitHistoryRequest, unit_history};
+pub use self::unit::{UnitHistoryRequest, expected_day, unit_history};
 pub use self::units::{UnitsHistoryRequest, unit_means, units_history};

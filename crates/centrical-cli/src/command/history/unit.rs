@@ -3,7 +3,9 @@
 use std::path::PathBuf;
 
 use centrical_report::{unit_history_plots, unit_history_text, write_plots};
-use centrical_session::{Calibrated, Date, Depth, Error, ParameterLimits, UnitHistoryRequest, by_unit, unit_history};
+use centrical_session::{
+    Calibrated, Date, Depth, Error, ParameterLimits, UnitHistoryRequest, by_unit, expected_day, unit_history,
+};
 
 use super::choice::Choice;
 use crate::given::largest_error;
@@ -67,10 +69,9 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let same_model = |unit: &Vec<Calibrated>| unit.first().is_some_and(|c| c.unit_model == calibrations[0].unit_model);
     let others: Vec<_> = others.into_iter().filter(same_model).collect();
     choice.remark_alike();
-    let last = calibrations.last();
-    if let Some((on, last)) = arguments.on.zip(last).filter(|(on, last)| *on < last.date) {
-        return Err(choice
-            .refuse(format!("--on {on}"), &format!("{}, the day of the last calibration, or a later one", last.date)));
+    let is_early = |on: Date| Some((on, expected_day(on, calibrations)?));
+    if let Some((on, expected)) = arguments.on.and_then(is_early) {
+        return Err(choice.refuse(format!("--on {on}"), &expected));
     }
     let request = UnitHistoryRequest {
         trend: !arguments.without_trend,

@@ -51,6 +51,12 @@ const PARTS: [f64; 4] = [-1.0, -0.5, 0.5, 1.0];
 /// Readings that are looked at: of three newtonometers at rest, and at forces along three axes.
 const READINGS: usize = 3 * (1 + 3 * PARTS.len());
 
+/// What is expected in place of a day `on` which the limit is to hold, if it is before the last calibration.
+pub fn expected_day(on: Date, calibrations: &[Calibrated]) -> Option<String> {
+    let last = calibrations.last().filter(|last| on < last.date)?;
+    Some(format!("{}, the day of the last calibration, or a later one", last.date))
+}
+
 /// The history of a unit by its `calibrations`, two or more, in the order of time. With `others`, the calibrations of other units of its type, unit by
 /// unit, the component between sessions is the one that all have in common. `None` where fewer than two calibrations have a parameter in common.
 pub fn unit_history(
