@@ -214,9 +214,9 @@ def test_tumble(root):
 
 @pytest.fixture(scope="module")
 def hundreds_of_rests(tmp_path_factory):
-    """A record of a unit that is turned by hand and left alone 480 times."""
+    """A record of a unit that is turned by hand and left alone 240 times."""
     random = np.random.default_rng(24)
-    rests, samples, turning = 480, 100, 30
+    rests, samples, turning = 240, 100, 30
     up = random.normal(size=(rests, 3))
     up /= np.linalg.norm(up, axis=1)[:, None]
     there = np.minimum(np.arange(samples + turning) / turning, 1.0)[None, :, None]
@@ -230,7 +230,7 @@ def hundreds_of_rests(tmp_path_factory):
 
 
 def test_tumble_of_hundreds_of_rests(hundreds_of_rests):
-    assert len(ct.tumble(hundreds_of_rests, gravity=9.81523).names) > 800
+    assert len(ct.tumble(hundreds_of_rests, gravity=9.81523).names) > 400
     assert_in_time_throughout(lambda: ct.tumble(hundreds_of_rests, gravity=9.81523))
 
 
@@ -242,7 +242,7 @@ def test_watch_that_reads_rests(example, hundreds_of_rests, tmp_path):
 
 def test_watch_of_hundreds_of_rests(example, hundreds_of_rests, tmp_path):
     table = np.loadtxt(hundreds_of_rests, delimiter=",", skiprows=1)
-    assert_watch_in_time_throughout(example, table[: 240 * 130], 50.0, tmp_path)
+    assert_watch_in_time_throughout(example, table[: 160 * 130], 50.0, tmp_path)
 
 
 def assert_watch_in_time_throughout(example, record, rate, tmp_path):
@@ -268,13 +268,13 @@ def test_series(example, long_session, tmp_path):
 def test_history_and_comparison(result, tmp_path):
     result.to_json(tmp_path / "result.json")
     document = json.loads((tmp_path / "result.json").read_text())
-    for n in range(300):
+    for n in range(100):
         document["session"]["date"] = f"{1900 + n}-01-01"
         (tmp_path / f"{n}.json").write_text(json.dumps(document))
     (tmp_path / "result.json").unlink()
     store, files = tmp_path / "store", sorted(tmp_path.glob("*.json"))
     assert_in_time_throughout(lambda: ct.add_to_store(store, files), lambda: shutil.rmtree(store, ignore_errors=True))
-    assert_in_time_throughout(lambda: ct.compare(files[:100]))
+    assert_in_time_throughout(lambda: ct.compare(files))
     ct.add_to_store(store, files)
     for of in ("unit", "station"):
         assert_in_time_throughout(lambda of=of: ct.history(store, of))

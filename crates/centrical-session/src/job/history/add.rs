@@ -1,9 +1,9 @@
 //! Results into a store.
 
-use std::mem;
 use std::path::{Path, PathBuf};
 
 use centrical::{OnProgress, advance, unwatched};
+use rayon::prelude::*;
 
 use super::results::collect_results;
 use crate::document::CalibrationResult;
@@ -38,20 +38,24 @@ pub fn add_results(
     Store::refuse_inputs(folder, &files)?;
     let store = Store::create(folder)?;
     let mut added = Added::default();
-    let mut batch: Vec<(Row, Option<Vec<u8>>)> = Vec::new();
-    for (n, file) in files.iter().enumerate() {
-        let text = read_result(file, "a result.json")?;
-        let result = CalibrationResult::parse(file, &text)?;
-        refuse_date(file, &result.session.date)?;
-        let row = result.row(text.as_bytes());
-        batch.push((row, (!rows_only).then(|| text.into_bytes())));
-        if batch.len() == BATCH || n + 1 == files.len() {
-            let of_batch = store.add_with_results(mem::take(&mut batch), progress)?;
-            added = Added { new: added.new + of_batch.new, known: added.known + of_batch.known };
-        }
-        advance(progress, 1)?;
+    for batch in files.chunks(BATCH) {
+        // To parse a result takes longer than all else; errors are those of one thread, the first file first.
+        let read: Vec<Result<_, Error>> = batch.par_iter().map(|file| read_row(file, rows_only)).collect();
+        let rows: Vec<_> = read.into_iter().collect::<Result<_, _>>()?;
+        let of_batch = store.add_with_results(rows, progress)?;
+        added = Added { new: added.new + of_batch.new, known: added.known + of_batch.known };
+        advance(progress, batch.len())?;
     }
     Ok(added)
+}
+
+/// The row of the result in `file`, with the bytes of the file unless `row_only`.
+fn read_row(file: &Path, row_only: bool) -> Result<(Row, Option<Vec<u8>>), Error> {
+    let text = read_result(file, "a result.json")?;
+    let result = CalibrationResult::parse(file, &text)?;
+    refuse_date(file, &result.session.date)?;
+    let row = result.row(text.as_bytes());
+    Ok((row, (!row_only).then(|| text.into_bytes())))
 }
 
 /// Refuses a date that is not a day, in a `file` whose result is to be added to a store. Without a date a result may be listed.
