@@ -29,7 +29,7 @@ pub fn plan_text(report: &PlanReport) -> Screen {
     if let Some(rests) = &report.rests {
         rests_beside(&mut screen, rests);
     }
-    screen.say(2, "Visits of one plateau come in separate runs through the speeds: each has a speed error of its own.");
+    screen.say(2, "Another plateau lies between two visits of one: the speed is set anew, with an error of its own.");
     goals(&mut screen, report);
     screen.gap();
     screen.add(prediction_text(&report.prediction));

@@ -1,5 +1,7 @@
 //! What can be measured, what it costs, and the schedule that is chosen from it.
 
+use std::collections::VecDeque;
+
 use nalgebra::Matrix3;
 
 use super::atom::Atoms;
@@ -128,9 +130,9 @@ impl Candidates {
         self.set_up_time(&used) + visits.iter().map(|visit| self.visit_time(visit)).sum::<f64>()
     }
 
-    /// A schedule of these visits: mounting by mounting, in each rest first and then rising speeds. A second visit of a
-    /// candidate belongs to another run through the speeds, so that each visit is approached anew and has a speed error of its
-    /// own. Two visits of one candidate follow one another only in a mounting with no other candidate.
+    /// A schedule of these visits: mounting by mounting, in each rest first and then rising speeds. Another visit lies between two
+    /// of one candidate, so that the speed is set anew and has an error of its own; those that the others cannot part stand
+    /// side by side.
     pub fn schedule(&self, mut visits: Vec<Visit>) -> Schedule {
         let set_points = &self.experiment().set_points;
         let speed = |visit: &Visit| set_points[visit.candidate].omega.abs();
@@ -142,7 +144,7 @@ impl Candidates {
         let mut ordered = Vec::with_capacity(visits.len());
         for mounting in 0..self.experiment().mountings.len() {
             let there = visits.iter().filter(|visit| set_points[visit.candidate].mounting == mounting);
-            ordered.extend(in_runs(there.copied().collect()));
+            ordered.extend(in_order(there.copied().collect(), speed));
         }
         Schedule { visits: ordered, time }
     }
@@ -247,26 +249,39 @@ impl Candidates {
     }
 }
 
-/// Visits of one mounting, rising, in as many runs as its most visited candidate has visits. A further run, which has fewer
-/// visits, precedes the others, or follows them where it would end on the candidate that they begin with.
-fn in_runs(rising: Vec<Visit>) -> Vec<Visit> {
-    let mut runs: Vec<Vec<Visit>> = Vec::new();
+/// Visits of one mounting in their order: each candidate once, rising, and further visits where the speed changes least on the way. No
+/// visit precedes another of its candidate, unless there are not enough others to part them.
+fn in_order(rising: Vec<Visit>, speed: impl Fn(&Visit) -> f64) -> Vec<Visit> {
+    let mut order: Vec<Visit> = Vec::with_capacity(rising.len());
+    let mut further = VecDeque::new();
     for visit in rising {
-        match runs.iter_mut().find(|run| run.iter().all(|other| other.candidate != visit.candidate)) {
-            Some(run) => run.push(visit),
-            None => runs.push(vec![visit]),
-        }
+        let is_first = order.last().is_none_or(|last| last.candidate != visit.candidate);
+        if is_first { order.push(visit) } else { further.push_back(visit) }
     }
-    let mut ordered: Vec<Visit> = Vec::new();
-    for mut run in runs {
-        let meets =
-            |run: &[Visit], others: &[Visit]| run.last().map(|v| v.candidate) == others.first().map(|v| v.candidate);
-        if meets(&run, &ordered) {
-            ordered.append(&mut run);
+    // Visits that found no place since the last one that did: others may make room.
+    let mut passed = 0;
+    while let Some(visit) = further.pop_front() {
+        if let Some(place) = place_of(&visit, &order, &speed) {
+            order.insert(place, visit);
+            passed = 0;
+        } else if passed < further.len() {
+            further.push_back(visit);
+            passed += 1;
         } else {
-            run.append(&mut ordered);
-            ordered = run;
+            order.push(visit);
         }
     }
-    ordered
+    order
+}
+
+/// Where a visit makes the machine, which starts and ends at rest, change its speed least, away from visits of its candidate; of equal
+/// places the last one.
+fn place_of(visit: &Visit, order: &[Visit], speed: impl Fn(&Visit) -> f64) -> Option<usize> {
+    let around = |place: usize| [place.checked_sub(1).and_then(|before| order.get(before)), order.get(place)];
+    let detour = |place: usize| {
+        let [before, after] = around(place).map(|other| other.map_or(0.0, &speed));
+        (before - speed(visit)).abs() + (speed(visit) - after).abs() - (before - after).abs()
+    };
+    let is_free = |place: &usize| around(*place).iter().flatten().all(|other| other.candidate != visit.candidate);
+    (0..=order.len()).rev().filter(is_free).min_by(|a, b| detour(*a).total_cmp(&detour(*b)))
 }

@@ -90,7 +90,7 @@ impl Exchange<'_> {
                 visits[x] = 0;
             }
         }
-        self.fill(self.schedule(visits))
+        self.fill(self.parted(visits))
     }
 
     /// Visits wherever the parts before and here add up to one: a visit that neighbouring speeds share goes to one of them, so
@@ -118,7 +118,7 @@ impl Exchange<'_> {
             visits
         };
         let fitting = (0..100).map(|n| rounded(1.0 - 0.01 * f64::from(n))).find(|visits| self.is_within(visits));
-        self.fill(self.schedule(fitting.unwrap_or_else(|| vec![0; w.len()])))
+        self.fill(self.parted(fitting.unwrap_or_else(|| vec![0; w.len()])))
     }
 
     /// Whole parts of visits first, then halves and more while they fit.
@@ -134,8 +134,7 @@ impl Exchange<'_> {
                 visits[x] -= 1;
             }
         }
-        let schedule = self.schedule(visits);
-        self.fill(schedule)
+        self.fill(self.parted(visits))
     }
 
     /// Exchanges until none of those tried gains.
@@ -157,7 +156,7 @@ impl Exchange<'_> {
                 trials += 1;
                 let mut visits = schedule.visits.clone();
                 self.apply(&mut visits, &fall);
-                let filled = self.fill(self.schedule(visits));
+                let filled = self.fill(self.parted(visits));
                 if filled.value < schedule.value - 1e-9 {
                     schedule = filled;
                     continue 'again;
@@ -204,6 +203,29 @@ impl Exchange<'_> {
                 .collect();
             schedule = self.with_factors(visits, factors);
         }
+    }
+
+    /// The schedule of these visits without those that no visit of another candidate parts, the shortest of them first.
+    pub fn parted(&self, mut visits: Vec<u32>) -> IntegerSchedule {
+        let atoms = self.candidates.atoms();
+        let by_set_up = self.visits_by_set_up(&visits);
+        for c in 0..atoms.candidates {
+            let of_candidate = &mut visits[atoms.of(c)];
+            let count: u32 = of_candidate.iter().sum();
+            let mut extra = count.saturating_sub(1 + by_set_up[self.set_up(c)] - count);
+            for n in of_candidate {
+                let left_out = extra.min(*n);
+                *n -= left_out;
+                extra -= left_out;
+            }
+        }
+        self.schedule(visits)
+    }
+
+    fn visits_by_set_up(&self, visits: &[u32]) -> Vec<u32> {
+        let mut by_set_up = vec![0; self.candidates.set_ups()];
+        (0..visits.len()).for_each(|x| by_set_up[self.candidates.set_up_of_atom(x)] += visits[x]);
+        by_set_up
     }
 
     /// The schedule of these visits.
@@ -264,10 +286,13 @@ impl Exchange<'_> {
     /// All changes of one visit that the bounds allow.
     fn moves(&self, schedule: &IntegerSchedule) -> impl Iterator<Item = Move> {
         let atoms = self.candidates.atoms();
+        let by_set_up = self.visits_by_set_up(&schedule.visits);
         let mut moves = Vec::new();
         for candidate in (0..atoms.candidates).filter(|&c| self.open[self.set_up(c)]) {
             let visits = &schedule.visits[atoms.of(candidate)];
-            let has_room = self.has_room(candidate, visits, 1);
+            let count: u32 = visits.iter().sum();
+            let is_parted = count <= by_set_up[self.set_up(candidate)] - count;
+            let has_room = is_parted && self.has_room(candidate, visits, 1);
             let ends = || (0..atoms.durations).map(Some).chain([None]);
             for from in ends().filter(|from| from.map_or(has_room, |d| visits[d] > 0)) {
                 moves.extend(ends().filter(|to| *to != from).map(|to| Move { candidate, from, to }));

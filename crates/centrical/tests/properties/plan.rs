@@ -359,6 +359,47 @@ fn schedule_is_sorted(schedule: &Schedule, candidates: &Candidates) -> bool {
     schedule.visits.windows(2).all(|w| mounting(&w[0]) <= mounting(&w[1]) && w[0].candidate != w[1].candidate)
 }
 
+/// However few plateaus a mounting has and however often each may be visited, another one lies between two visits of it; and the speed
+/// climbs by little more on the way than once to the fastest and from a neighbour for each further visit.
+#[test]
+fn another_plateau_lies_between_two_visits_of_one() {
+    let mut random = Random::new(18);
+    let mut repeated = 0;
+    for case in 0..40 {
+        let candidates = Candidates { repeats: 2 + random.below(4), ..small(&mut random) };
+        let criterion = criterion(case % 4, &candidates.scenarios[0].model);
+        let all: Vec<Visit> =
+            (0..candidates.len()).map(|c| Visit { candidate: c, duration: candidates.durations[1] }).collect();
+        let time = candidates.time_of(&all) * (0.5 + 4.0 * random.uniform());
+        let Ok(plan) = best_for_time(&candidates, &criterion, time, Effort::QUICK, &unwatched) else { continue };
+        assert!(schedule_is_sorted(&plan.schedule, &candidates), "case {case}: {:?}", plan.schedule.visits);
+        assert!(plan.schedule.time <= time * (1.0 + 1e-12), "case {case}");
+        let found = value(&criterion, &candidates, &plan.schedule.visits);
+        assert!((plan.criterion / found - 1.0).abs() < 1e-6, "case {case}: {} {found}", plan.criterion);
+        let of = |c: usize| plan.schedule.visits.iter().filter(|v| v.candidate == c).count();
+        repeated += usize::from((0..candidates.len()).any(|c| of(c) > 1));
+        let goal = Goal::Reading {
+            range: RANGE,
+            uncertainty: 0.7 * value(&Criterion::Reading(RANGE), &candidates, &all).sqrt(),
+        };
+        let goals = Criterion::Worst(vec![goal]);
+        if let Ok(shortest) = shortest_for_goals(&candidates, &goals, 0.01, Effort::QUICK, &unwatched) {
+            assert!(schedule_is_sorted(&shortest.schedule, &candidates), "case {case}: {:?}", shortest.schedule.visits);
+        }
+    }
+    assert!(repeated > 20, "{repeated}");
+    // Three visits of each of four speeds and two rests: a way of small steps.
+    let candidates = large(4, &[30.0]);
+    let visits = (0..6).flat_map(|candidate| [Visit { candidate, duration: 30.0 }; 3]).collect();
+    let schedule = candidates.schedule(visits);
+    assert!(schedule_is_sorted(&schedule, &candidates) && schedule.visits.len() == 18);
+    let speeds: Vec<f64> =
+        schedule.visits.iter().map(|v| candidates.experiment().set_points[v.candidate].omega.abs()).collect();
+    let fastest = speeds.iter().copied().fold(0.0, f64::max);
+    let climbed: f64 = speeds[0] + speeds.windows(2).map(|pair| (pair[1] - pair[0]).max(0.0)).sum::<f64>();
+    assert!(climbed < 3.0 * fastest, "{climbed} {fastest} {speeds:?}");
+}
+
 /// A machine's worth of candidates: six positions, two radii, speeds by load.
 pub fn large(speeds: usize, durations: &[f64]) -> Candidates {
     let mut experiment = crate::common::experiment(ThirdPosition::AxisOneUp, PairRelation::Common, &[1.0, 0.5]);

@@ -124,7 +124,7 @@ impl<'a> Heuristics<'a> {
             let is_rough = schedule.value > relaxed.value + VERY_ROUGH;
             is_done = is_thorough || !is_rough;
             if is_thorough && is_rough {
-                let dived = |at_once| exchange.fill(exchange.schedule(self.dive(&set, &relaxed, at_once)));
+                let dived = |at_once| exchange.fill(exchange.parted(self.dive(&set, &relaxed, at_once)));
                 let starts = AT_ONCE.map(dived).into_iter().chain([exchange.rounded_short(&relaxed.visits)]);
                 for other in starts.map(|start| exchange.improve(start)) {
                     if other.value < schedule.value {

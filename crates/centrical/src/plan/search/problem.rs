@@ -93,7 +93,7 @@ impl<'a> Problem<'a> {
 
     /// Every candidate of some set-ups as often and as long as possible.
     pub fn everything_on(&self, set: &[bool]) -> IntegerSchedule {
-        self.schedule(self.most_visits(set))
+        self.exchange(f64::INFINITY, &[], 0).parted(self.most_visits(set))
     }
 
     /// A schedule with everything on one set-up more.
