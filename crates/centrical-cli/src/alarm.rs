@@ -26,6 +26,7 @@ impl Alarm {
         match alarm_text(event) {
             Some((AlarmKind::Plateau, found)) => self.raise("plateau", &found),
             Some((AlarmKind::Frozen, found)) => self.raise("frozen", &found),
+            Some((AlarmKind::Failed, found)) => self.raise("failed", &found),
             None => {}
         }
     }

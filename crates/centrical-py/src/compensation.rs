@@ -1,6 +1,7 @@
 //! Readings to specific force by rows, on all threads where there are many.
 
 use centrical_compensate::{Compensation, Term};
+use centrical_session::OutputSummary;
 use rayon::prelude::*;
 
 /// Rows that are quicker one by one than as vectors.
@@ -12,8 +13,19 @@ const TASK: usize = 16 * 1024;
 /// An owned compensation: certified once, used in every call.
 pub type Owned = Compensation<Vec<Term>>;
 
-/// Compensates `readings` into `forces`, of one length; the number of readings that are numbers and that no force gives.
-pub fn rows_to(compensation: &Owned, readings: &[[f64; 3]], forces: &mut [[f64; 3]], is_parallel: bool) -> usize {
+/// Compensates `readings` into `forces`, of one length; the number of readings that are numbers and that no force gives. Readings in
+/// the unit of an `output` are taken to m/s^2 first.
+pub fn rows_to(
+    compensation: &Owned,
+    output: Option<&OutputSummary>,
+    readings: &[[f64; 3]],
+    forces: &mut [[f64; 3]],
+    is_parallel: bool,
+) -> usize {
+    if output.is_some() {
+        forces.copy_from_slice(readings);
+        return rows(compensation, output, forces, is_parallel);
+    }
     if readings.len() <= FEW {
         return readings.iter().zip(forces).map(|(reading, force)| one_by_one(compensation, *reading, force)).sum();
     }
@@ -28,8 +40,13 @@ pub fn rows_to(compensation: &Owned, readings: &[[f64; 3]], forces: &mut [[f64; 
 }
 
 /// The same in place, where readings that are not numbers have to be counted beforehand.
-pub fn rows(compensation: &Owned, f: &mut [[f64; 3]], is_parallel: bool) -> usize {
+pub fn rows(compensation: &Owned, output: Option<&OutputSummary>, f: &mut [[f64; 3]], is_parallel: bool) -> usize {
     let task = |f: &mut [[f64; 3]]| {
+        if let Some(output) = output {
+            for row in &mut *f {
+                *row = output.readings(*row);
+            }
+        }
         let missing = not_numbers(f);
         compensation.apply_rows(f).count - missing
     };

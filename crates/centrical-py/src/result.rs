@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
 use centrical::uncertainty::{Compensated, ModelInAxes};
-use centrical_report::{Emphasis, Language, Screen, figures, terminal_table, verdict_text};
-use centrical_session::{self as session, Axes, Error, ObjectionName, SCHEMA};
+use centrical_report::{Emphasis, Language, Screen, UnitStatement, figures, terminal_table, unit_text, verdict_text};
+use centrical_session::{self as session, Axes, Error, ObjectionName, OutputSummary, SCHEMA};
 use nalgebra::Vector3;
 use numpy::{PyArray1, PyArray2, PyUntypedArrayMethods};
 use pyo3::IntoPyObjectExt;
@@ -29,13 +29,15 @@ type Drawn = (&'static str, String, String, Vec<String>);
 pub struct CalibrationResult {
     /// What `result.json` holds.
     pub result: session::CalibrationResult,
+    /// What the laboratory's limits say of the unit, where it was calibrated with some.
+    pub unit: Option<UnitStatement>,
     /// Certified at its first use.
     compensation: OnceLock<Owned>,
 }
 
 impl From<session::CalibrationResult> for CalibrationResult {
     fn from(result: session::CalibrationResult) -> Self {
-        Self { result, compensation: OnceLock::new() }
+        Self { result, unit: None, compensation: OnceLock::new() }
     }
 }
 
@@ -146,6 +148,9 @@ impl CalibrationResult {
     fn text(&self, width: usize) -> PyResult<String> {
         guarded(|| {
             let mut screen = verdict_text(&self.result.objections(), self.result.is_checked());
+            if let Some(unit) = &self.unit {
+                screen.add(unit_text(unit));
+            }
             screen.gap();
             screen.add(terminal_table(&self.result));
             Ok(lines(&screen, width))
@@ -166,8 +171,21 @@ impl CalibrationResult {
         guarded(|| Ok(self.compensation(py)?.certificate().range))
     }
 
+    /// Whether the unit keeps the limits that it was calibrated with.
+    #[getter]
+    fn within_limits(&self) -> Option<bool> {
+        self.unit.as_ref().map(UnitStatement::is_within)
+    }
+
+    /// Unit of the readings that compensation takes.
+    #[getter]
+    fn output_unit(&self) -> &str {
+        self.result.output.as_ref().map_or("m/s^2", |output| &output.unit)
+    }
+
     #[pyo3(signature = (readings, out=None))]
-    /// Compensates readings `(n, 3)` [m/s^2]; the forces, and how many readings no force of the range gives.
+    /// Compensates readings `(n, 3)` in the unit of the calibration's records; the forces [m/s^2], and how many readings no force of the
+    /// range gives.
     fn compensate<'py>(
         &self,
         readings: &Bound<'py, PyAny>,
@@ -176,18 +194,19 @@ impl CalibrationResult {
         guarded(|| {
             let py = readings.py();
             let compensation = self.compensation(py)?;
+            let output = self.result.output.as_ref();
             let Some(given) = out else {
                 let readings = arrays::rows("readings", readings, true)?;
                 let forces = PyArray2::zeros(py, [readings.shape()[0], 3], false);
-                let outside = between(py, compensation, &readings, &forces)?;
+                let outside = between(py, compensation, output, &readings, &forces)?;
                 return Ok((forces.into_bound_py_any(py)?, outside));
             };
             let forces = arrays::rows("out", given, false)?;
             let outside = if readings.is(given) {
-                in_place(py, compensation, &forces)?
+                in_place(py, compensation, output, &forces)?
             } else {
                 let readings = arrays::rows("readings", readings, true)?;
-                between(py, compensation, &readings, &forces)?
+                between(py, compensation, output, &readings, &forces)?
             };
             Ok((given.clone(), outside))
         })
@@ -259,7 +278,13 @@ fn owned(result: &session::CalibrationResult) -> Result<Owned, Error> {
     owned.map(|owned| result.in_its_axes(owned)).map_err(|source| Error::NotInvertible { file: file(), source })
 }
 
-fn between(py: Python, compensation: &Owned, readings: &arrays::Rows, forces: &arrays::Rows) -> PyResult<usize> {
+fn between(
+    py: Python,
+    compensation: &Owned,
+    output: Option<&OutputSummary>,
+    readings: &arrays::Rows,
+    forces: &arrays::Rows,
+) -> PyResult<usize> {
     let (from, to) = (readings.shape()[0], forces.shape()[0]);
     if from != to {
         let message = format!("out: found shape ({to}, 3), expected ({from}, 3) as of the readings");
@@ -271,20 +296,25 @@ fn between(py: Python, compensation: &Owned, readings: &arrays::Rows, forces: &a
     let (read, mut write) = (arrays::to_read("readings", readings)?, arrays::to_write("out", forces)?);
     let (from, to) = (as_rows(read.as_slice()?), as_rows_mut(write.as_slice_mut()?));
     if from.len() < MANY {
-        return Ok(compensation::rows_to(compensation, from, to, false));
+        return Ok(compensation::rows_to(compensation, output, from, to, false));
     }
     let is_parallel = pool::is_ours();
-    Ok(py.detach(|| compensation::rows_to(compensation, from, to, is_parallel)))
+    Ok(py.detach(|| compensation::rows_to(compensation, output, from, to, is_parallel)))
 }
 
-fn in_place(py: Python, compensation: &Owned, forces: &arrays::Rows) -> PyResult<usize> {
+fn in_place(
+    py: Python,
+    compensation: &Owned,
+    output: Option<&OutputSummary>,
+    forces: &arrays::Rows,
+) -> PyResult<usize> {
     let mut write = arrays::to_write("out", forces)?;
     let f = as_rows_mut(write.as_slice_mut()?);
     let is_parallel = pool::is_ours();
     if f.len() < MANY {
-        return Ok(compensation::rows(compensation, f, false));
+        return Ok(compensation::rows(compensation, output, f, false));
     }
-    Ok(py.detach(|| compensation::rows(compensation, f, is_parallel)))
+    Ok(py.detach(|| compensation::rows(compensation, output, f, is_parallel)))
 }
 
 /// What the coefficients leave in a compensated reading.

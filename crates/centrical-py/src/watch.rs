@@ -242,13 +242,14 @@ fn alarm_event(kind: AlarmKind) -> &'static str {
     match kind {
         AlarmKind::Plateau => "plateau-alarm",
         AlarmKind::Frozen => "frozen-alarm",
+        AlarmKind::Failed => "failed-alarm",
     }
 }
 
 /// The event for the other thread; a plateau as its line of the history.
 fn message(event: &WatchEvent, out: &Path) -> Result<Option<Event>, Error> {
     match event {
-        WatchEvent::Begun(_) => Ok(None),
+        WatchEvent::Begun(_) | WatchEvent::Failed(_) => Ok(None),
         WatchEvent::Followed(model) => write_history_plot(model, out).map(|()| None),
         WatchEvent::Waiting(note) => Ok(Some(Event::Waiting((*note).to_owned()))),
         WatchEvent::Frozen { file, age } => {

@@ -7,6 +7,7 @@ import re
 import shutil
 import subprocess
 import time
+from pathlib import Path
 
 import centrical as ct
 import pytest
@@ -43,6 +44,21 @@ def test_calibrate_into_a_folder(program, tmp_path, root):
     assert names[0] == names[1] and "certificate.pdf" in names[0]
     for name in names[0]:
         assert (tmp_path / "python" / name).read_bytes() == (tmp_path / "command" / name).read_bytes(), name
+
+
+def test_limits_of_the_unit(program, tmp_path):
+    laboratory = Path(f"{SESSION}/laboratory.toml")
+    assert ct.calibrate(SESSION).within_limits is None
+    assert ct.calibrate(SESSION, laboratory=laboratory).within_limits is True
+    strict = tmp_path / "laboratory.toml"
+    strict.write_text(laboratory.read_text() + '\n[[decision.limit]]\ngroup = "bias"\nwithin = "1 mg"\n')
+    result = ct.calibrate(SESSION, laboratory=strict)
+    assert result.acceptable and result.within_limits is False
+    assert "UNIT NOT WITHIN ITS LIMITS" in str(result)
+    said = ct.report(result.to_json(tmp_path / "result.json") or tmp_path / "result.json", pdf=tmp_path / "c.pdf", laboratory=strict)
+    assert said.acceptable and said.within_limits is False
+    with pytest.raises(FileNotFoundError):
+        ct.calibrate(SESSION, laboratory="nowhere.toml")
 
 
 def test_observe(program):

@@ -1,5 +1,6 @@
 """Compensation of arrays: the same bits in every order, and clear refusals."""
 
+import json
 import pickle
 import threading
 import timeit
@@ -271,3 +272,21 @@ def test_readings_go_through_vectors(result, readings):
         return min(timeit.repeat(call, number=5, repeat=40))
 
     assert least(lambda: result.compensate(many, out)) < 8.0 * least(lambda: np.sqrt(squares, out=out))
+
+
+@pytest.mark.parametrize("rows", [3, 2000])
+def test_readings_in_the_unit_of_the_records(result, readings, rows, tmp_path):
+    document = json.loads(result.to_json())
+    assert result.output_unit == "m/s^2"
+    scale, bias = np.array([0.02, -0.021, 0.019]), np.array([0.1, 0.0, -0.2])
+    document["output"] = {"unit": "V", "scale": scale.tolist(), "bias": bias.tolist()}
+    (tmp_path / "volts.json").write_text(json.dumps(document))
+    in_volts = ct.read_result(tmp_path / "volts.json")
+    assert in_volts.output_unit == "V"
+    given = np.resize(readings, (rows, 3))
+    volts, forces = given * scale + bias, result.compensate(given)
+    assert np.allclose(in_volts.compensate(volts), forces, rtol=0, atol=1e-9)
+    assert np.allclose(in_volts.compensate(volts, np.empty_like(volts)), forces, rtol=0, atol=1e-9)
+    table = in_volts.compensate(dict(zip(("f1", "f2", "f3"), volts.T.copy())))
+    assert np.allclose(np.column_stack([table[name] for name in table]), forces, rtol=0, atol=1e-9)
+    assert in_volts.compensate(volts, volts) is volts and np.allclose(volts, forces, rtol=0, atol=1e-9)

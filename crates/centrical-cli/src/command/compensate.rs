@@ -18,7 +18,7 @@ use crate::printing::Printing;
 pub struct Arguments {
     /// The result of a calibration: result.json
     result: PathBuf,
-    /// The record: CSV or Parquet with t [s] and f1, f2, f3 in the unit of the calibration, unless --session says otherwise
+    /// The record: CSV or Parquet with t [s] and f1, f2, f3 in the unit of the calibration's records, unless --session says otherwise
     record: PathBuf,
     /// Output file: Parquet if its name ends in .parquet, CSV otherwise
     #[arg(short, long, value_name = "FILE")]

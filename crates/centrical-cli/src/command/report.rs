@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use centrical_report::{
-    DocumentRequest, Emphasis, Language, Screen, UnitStatement, UnitVerdict, unit_text, verdict_text, write_documents,
+    DocumentRequest, Emphasis, Language, Screen, UnitStatement, unit_text, verdict_text, write_documents,
 };
 use centrical_session::{Axes, CalibrationResult, DocumentKind, DocumentsReport, Error, Place};
 use clap::ValueEnum;
@@ -134,7 +134,8 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
         screen.add(unit.as_ref().filter(|_| !is_within).map(unit_text).unwrap_or_default());
         screen
     };
-    let json = || DocumentsReport::of(&arguments.result, &result, &written(arguments)).to_json();
+    let within = unit.as_ref().map(UnitStatement::is_within);
+    let json = || DocumentsReport::of(&arguments.result, &result, &written(arguments), within).to_json();
     arguments.printing.show(text, json)?;
     Ok(Outcome::acceptable(objections.is_empty() && is_within))
 }
@@ -150,7 +151,7 @@ pub fn remark_other_days(words: Option<&str>) {
 
 /// Whether the unit keeps the limits that were asked for; limits that were not are kept.
 pub fn is_within_limits(unit: Option<&UnitStatement>) -> bool {
-    unit.is_none_or(|unit| unit.verdict() == UnitVerdict::Within)
+    unit.is_none_or(UnitStatement::is_within)
 }
 
 /// The documents that were asked for.

@@ -59,7 +59,7 @@ pub struct Arguments {
     /// Process what is present and exit
     #[arg(long)]
     once: bool,
-    /// Run a command of the shell when a plateau does not fit or a record is frozen; CENTRICAL_ALARM and CENTRICAL_MESSAGE say which
+    /// Run a command of the shell when a plateau does not fit, a record is frozen or the watch fails; CENTRICAL_ALARM and CENTRICAL_MESSAGE say which
     #[arg(long, value_name = "COMMAND")]
     on_alarm: Option<String>,
     #[cfg(feature = "serve")]
@@ -69,6 +69,10 @@ pub struct Arguments {
     #[arg(short, long)]
     json: bool,
 }
+
+/// What the page shows.
+#[cfg(feature = "serve")]
+const LIVE_FILE: &str = "watch-live.json";
 
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
@@ -113,7 +117,14 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
         if shown.is_ok() {
             shown = outcome;
         }
-    })?;
+    });
+    #[cfg(feature = "serve")]
+    if let (Err(error), Some(url), true) = (&end, &url, arguments.out.join(LIVE_FILE).exists()) {
+        // The page says what was wrong to one who comes later.
+        say(&format!("{error}\n"));
+        remain(url);
+    }
+    let end = end?;
     shown?;
     match end {
         WatchEnd::Stopped { plateaus } => {
@@ -150,6 +161,8 @@ fn show(event: &WatchEvent, arguments: &Arguments) -> Result<(), Error> {
         WatchEvent::Followed(model) => write_history_plot(model, &arguments.out)?,
         WatchEvent::Waiting(note) => say(&format!("{note}\n")),
         WatchEvent::Frozen { file, age } => say(&format!("{}\n", frozen_text(file, *age))),
+        // The error is printed where the command ends.
+        WatchEvent::Failed(_) => {}
         WatchEvent::Plateau(progress) if arguments.json => {
             if let Some(last) = progress.plateaus.last() {
                 print(&last.entry(progress.plateaus.len(), progress.model, &progress.now).line()?)?;

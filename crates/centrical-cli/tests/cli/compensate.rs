@@ -226,3 +226,32 @@ fn a_session_of_another_unit_is_refused() {
     let expected = "found a unit of the serial number \"0002\", expected \"0001\", as in result.json";
     assert!(output.status.code() == Some(2) && text(&output).contains(expected), "{}", text(&output));
 }
+
+/// A record in g is read in the unit of the calibration's records, and FLT_MAX among its readings is one spike.
+#[test]
+fn readings_are_in_the_unit_of_the_records() {
+    let copy = calibrated();
+    assert!(compensate(&copy, &["si.csv"]).status.success());
+    let experiment = copy.session().join("experiment.toml");
+    let text_of = fs::read_to_string(&experiment).unwrap();
+    fs::write(&experiment, text_of.replace("output_unit = \"m/s^2\"", "output_unit = \"g\"")).unwrap();
+    for file in fs::read_dir(copy.session().join("records")).unwrap() {
+        let file = file.unwrap().path();
+        let rows = columns(&fs::read_to_string(&file).unwrap()).into_iter().enumerate();
+        let row = |(n, [t, f1, f2, f3]): (usize, [f64; 4])| {
+            let [f1, f2, f3] = [f1, f2, f3].map(|f| f / centrical::STANDARD_GRAVITY);
+            let f1 = if n == 500 { f64::from(f32::MAX) } else { f1 };
+            format!("{t},{f1:.12},{f2:.12},{f3:.12}\n")
+        };
+        fs::write(&file, format!("t,f1,f2,f3\n{}", rows.map(row).collect::<String>())).unwrap();
+    }
+    let calibration = copy.calibrate(&[]);
+    assert!(calibration.status.success(), "{}", text(&calibration));
+    // Four of the example, one in each of twelve records.
+    assert!(text(&calibration).contains("spikes 16"), "{}", text(&calibration));
+    // That reading has no force.
+    assert_eq!(compensate(&copy, &["g.csv"]).status.code(), Some(1));
+    let [si, g] = ["si.csv", "g.csv"].map(|file| columns(&fs::read_to_string(copy.out().join(file)).unwrap()));
+    let is_near = |(n, (a, b)): (usize, (&[f64; 4], &[f64; 4]))| n == 500 || (1..4).all(|i| (a[i] - b[i]).abs() < 2e-4);
+    assert!(si.iter().zip(&g).enumerate().all(is_near));
+}

@@ -164,7 +164,7 @@ fn alarms_by_an_early_plateau_that_is_off_are_traced_to_it() {
     assert!(watched == fs::read(copy.out().join("result.json")).unwrap());
 }
 
-/// What was taken up from a file that another has replaced since is said to rest on the earlier one.
+/// A watch begins anew where what was taken up reads otherwise now.
 #[test]
 fn a_plateau_that_was_corrected_is_noticed() {
     let copy = averaged();
@@ -172,10 +172,48 @@ fn a_plateau_that_was_corrected_is_noticed() {
     let arguments = ["watch", session.to_str().unwrap(), "--quiet", "0", "--once"];
     let said = |run: Output| [run.stdout, run.stderr].map(|part| String::from_utf8(part).unwrap()).concat();
     assert!(!said(copy.run(&arguments)).contains("otherwise than before"));
+    let sound = fs::read(copy.out().join("watch-history.jsonl")).unwrap();
     assert!(!said(copy.run(&arguments)).contains("otherwise than before"));
+    let table = fs::read_to_string(session.join("plateaus.csv")).unwrap();
     copy.edit("plateaus.csv", |text| shifted(&text, 10));
     let text = said(copy.run(&arguments));
-    assert!(text.contains("plateau 2:2 reads otherwise than before"), "{text}");
+    assert!(text.contains("plateau 2:2 reads otherwise than before; the watch begins anew"), "{text}");
+    assert!(sound != fs::read(copy.out().join("watch-history.jsonl")).unwrap() && lines(&copy.out()) == 108);
+    fs::write(session.join("plateaus.csv"), table).unwrap();
+    copy.run(&arguments);
+    assert!(sound == fs::read(copy.out().join("watch-history.jsonl")).unwrap());
+}
+
+/// A mounting is repeated, and its new record replaces the old one while the watch is at the next: the alarms go.
+#[test]
+fn a_mounting_that_is_repeated_is_taken_up_anew() {
+    let copy = Copy::new();
+    let records = copy.session().join("records");
+    fs::remove_dir_all(&records).unwrap();
+    fs::create_dir(&records).unwrap();
+    let mut watch = start(&copy);
+    let come = |number: usize, change: fn(f64) -> f64| {
+        let name = format!("m{number:02}.csv");
+        let text = fs::read_to_string(example().join("records").join(&name)).unwrap();
+        let row = |line: &str| {
+            let cells: Vec<&str> = line.splitn(3, ',').collect();
+            cells[1].parse().map_or(line.to_owned(), |f1| format!("{},{},{}", cells[0], change(f1), cells[2]))
+        };
+        let text: String = text.lines().map(|line| row(line) + "\n").collect();
+        fs::write(records.join("coming"), text).unwrap();
+        fs::rename(records.join("coming"), records.join(&name)).unwrap();
+    };
+    let alarms = || history(&copy.out()).iter().filter(|line| line["alarm"] == true).count();
+    (1..=3).for_each(|number| come(number, |f1| f1));
+    come(4, |f1| if f1.abs() > 60.0 { f1 + 0.3 } else { f1 });
+    (5..=8).for_each(|number| come(number, |f1| f1));
+    until("eight mountings", || lines(&copy.out()) >= 70);
+    assert!(alarms() > 0);
+    come(4, |f1| f1);
+    until("the repeated mounting", || lines(&copy.out()) >= 70 && alarms() == 0);
+    (9..=12).for_each(|number| come(number, |f1| f1));
+    until("the calibration", || watch.try_wait().unwrap().is_some());
+    assert_eq!((watch.wait().unwrap().code(), alarms(), lines(&copy.out())), (Some(0), 0, 108));
 }
 
 /// The table of plateaus with the row `row`, from 0, off by 20 mm/s^2.

@@ -49,6 +49,8 @@ def calibrate(
         Plateaus that are predicted and not fitted: ``"4:3"`` for the third of the fourth mounting.
     out
         A folder for ``result.json``, the report and its plots; with ``laboratory`` also the certificates.
+    laboratory
+        A laboratory file. Its limits are judged: :attr:`Result.within_limits`.
 
     >>> ct.calibrate(example).names[:2]
     ('alpha_1', 'alpha_2')

@@ -128,6 +128,12 @@ class Result:
         """
         return not self.objections
 
+    @property
+    def within_limits(self) -> bool | None:
+        """Whether the unit keeps the limits of the ``laboratory`` that it was calibrated with; ``None`` without limits, and of a result
+        that was read."""
+        return self.native.within_limits
+
     @cached_property
     def document(self) -> Document:
         """All that ``result.json`` holds, by attribute and key."""
@@ -156,6 +162,11 @@ class Result:
         """Largest specific force on each axis that :meth:`compensate` gives [m/s^2]."""
         return self.native.range
 
+    @property
+    def output_unit(self) -> str:
+        """Unit of the readings that :meth:`compensate` takes: that of the records of the calibration."""
+        return self.native.output_unit
+
     if TYPE_CHECKING:
 
         @overload
@@ -171,6 +182,8 @@ class Result:
 
     def compensate(self, readings: Any, out: Any = None, uncertainty: bool = False) -> Any:
         """From readings to specific force [m/s^2], exact to rounding.
+
+        Readings are those of a record, in :attr:`output_unit`: counts and volts are taken to m/s^2 by the scale and bias of the session.
 
         Parameters
         ----------

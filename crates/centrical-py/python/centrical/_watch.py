@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 #: The events that are alarms, and what each is about.
-ALARMS = {"plateau-alarm": "plateau", "frozen-alarm": "frozen"}
+ALARMS = {"plateau-alarm": "plateau", "frozen-alarm": "frozen", "failed-alarm": "failed"}
 
 
 class Watch(Iterator[Document]):
@@ -96,7 +96,7 @@ def watch(
         other names of this machine by which browsers may call it. There is no password. It needs a package that was built with the
         feature ``serve``, which wheels have not.
     on_alarm
-        A function of ``"plateau"`` or ``"frozen"`` and of what was found: it is called while the plateaus are iterated. Or a command of
+        A function of ``"plateau"``, ``"frozen"`` or ``"failed"`` and of what was found: it is called while the plateaus are iterated. Or a command of
         the shell, which is started and not waited for, with ``CENTRICAL_ALARM``, ``CENTRICAL_MESSAGE`` and ``CENTRICAL_SESSION``.
 
     >>> watched = ct.watch(example, folder / "watched", once=True, quiet=0.0)

@@ -25,7 +25,7 @@ pub fn calibrate(
 ) -> PyResult<CalibrationResult> {
     let (method, language) = (words::method(method)?, words::language(language)?);
     let hold_out = words::plateaus("hold_out", &hold_out)?;
-    let result = progress::run(py, &shown, |work| {
+    let (result, unit) = progress::run(py, &shown, |work| {
         let session = session.read()?;
         work.expect(2 * session.record_bytes());
         let claim = out.as_deref().map(claim_folder).transpose()?;
@@ -34,13 +34,17 @@ pub fn calibrate(
         let result = calibrate_without(&session, &hold_out, method, &|bytes| work.advance(bytes))?;
         if let Some(folder) = &out {
             result.write(&folder.join("result.json"))?;
-            let issuer = laboratory.as_deref().map(|file| read_issuer(file, &result)).transpose()?;
+        }
+        let issuer = laboratory.as_deref().map(|file| read_issuer(file, &result)).transpose()?;
+        if let Some(folder) = &out {
             write_all_documents(&result, issuer.as_ref(), language, folder)?;
         }
         drop(claim);
-        Ok(result)
+        Ok((result, issuer.and_then(|issuer| issuer.unit)))
     })?;
-    Ok(result.into())
+    let mut result = CalibrationResult::from(result);
+    result.unit = unit;
+    Ok(result)
 }
 
 /// The files that are written, but for plots.

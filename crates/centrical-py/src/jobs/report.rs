@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use centrical_report::{DocumentRequest, write_documents};
+use centrical_report::{DocumentRequest, UnitStatement, write_documents};
 use centrical_session::{Axes, Dimension, DocumentKind, DocumentsReport};
 use pyo3::prelude::*;
 
@@ -35,7 +35,8 @@ pub fn report(
     progress::run(py, &None, |_| {
         let documents = write_documents(&request)?;
         let name = name.as_deref().unwrap_or(&request.result);
-        DocumentsReport::of(name, &documents.result, &written(&request)).to_json()
+        let within = documents.unit.as_ref().map(UnitStatement::is_within);
+        DocumentsReport::of(name, &documents.result, &written(&request), within).to_json()
     })
 }
 

@@ -23,7 +23,9 @@ pub(super) fn symbols(result: &CalibrationResult, language: Language) -> Vec<Fac
 /// The nominal scale and bias of a unit that does not put out an acceleration.
 pub(super) fn nominal_output(result: &CalibrationResult, language: Language) -> Vec<Block> {
     let messages = language.messages();
-    let Some(OutputSummary { unit, scale, bias }) = &result.output else { return Vec::new() };
+    let Some(OutputSummary { unit, scale, bias }) = result.output.as_ref().filter(|output| output.is_raw()) else {
+        return Vec::new();
+    };
     let unit = language.unit(unit);
     let row = |name: &str, numbers: &[f64; 3], unit: String| {
         let numbers = numbers.iter().map(|number| language.number(&number.to_string()));

@@ -71,6 +71,11 @@ impl UnitStatement {
             UnitVerdict::Within
         }
     }
+
+    /// Whether the unit is stated to keep its limits.
+    pub fn is_within(&self) -> bool {
+        self.verdict() == UnitVerdict::Within
+    }
 }
 
 fn parameter(result: &CalibrationResult, name: &str) -> Option<(f64, f64)> {

@@ -12,6 +12,8 @@ pub enum AlarmKind {
     Plateau,
     /// A record that is frozen.
     Frozen,
+    /// A record that is wrong, or another error that ends the watch.
+    Failed,
 }
 
 /// The alarm of an event and what was found, if the event is one.
@@ -25,6 +27,7 @@ pub fn alarm_text(event: &WatchEvent) -> Option<(AlarmKind, String)> {
             Some((AlarmKind::Plateau, found))
         }
         WatchEvent::Frozen { file, age } => Some((AlarmKind::Frozen, frozen_text(file, *age))),
+        WatchEvent::Failed(error) => Some((AlarmKind::Failed, error.to_string())),
         WatchEvent::Begun(_) | WatchEvent::Followed(_) | WatchEvent::Waiting(_) => None,
     }
 }

@@ -15,6 +15,7 @@ impl CalibrationResult {
         let objections = self.objections();
         let of_parameters =
             |text: fn(&ParameterEstimate) -> String| self.parameters.iter().map(text).collect::<Vec<_>>();
+        let raw_output = self.output.as_ref().filter(|output| output.is_raw());
         let (combined, covariance) = (self.combined(), self.packed_covariance());
         let (shared, priors) = (self.shared_influences(), self.row_priors());
         Row {
@@ -43,9 +44,9 @@ impl CalibrationResult {
             values: self.parameters.iter().map(|p| p.value.unwrap_or(f64::NAN)).collect(),
             standard_uncertainties: combined,
             covariance,
-            output_unit: self.output.as_ref().map_or_else(String::new, |output| output.unit.clone()),
-            output_scale: self.output.as_ref().map_or_else(Vec::new, |output| output.scale.to_vec()),
-            output_bias: self.output.as_ref().map_or_else(Vec::new, |output| output.bias.to_vec()),
+            output_unit: raw_output.map_or_else(String::new, |output| output.unit.clone()),
+            output_scale: raw_output.map_or_else(Vec::new, |output| output.scale.to_vec()),
+            output_bias: raw_output.map_or_else(Vec::new, |output| output.bias.to_vec()),
             terms: self.row_terms(),
             shared_known: shared.is_some(),
             shared: shared.unwrap_or_default(),

@@ -26,6 +26,9 @@ pub struct DocumentsReport {
     pub acceptable: bool,
     /// The objections to the result; its `validity`, `fit` and `speeds` say more of each.
     pub objections: Vec<ObjectionName>,
+    /// Whether the unit keeps the limits of the laboratory, where there are some.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub within_limits: Option<bool>,
 }
 
 /// A document that was written.
@@ -109,8 +112,13 @@ impl From<&ResultObjection> for ObjectionName {
 }
 
 impl DocumentsReport {
-    /// The documents that were `written` of the result in `file`.
-    pub fn of(file: &Path, result: &CalibrationResult, written: &[(DocumentKind, &Path)]) -> Self {
+    /// The documents that were `written` of the result in `file`, and whether the unit is within its limits, if it has some.
+    pub fn of(
+        file: &Path,
+        result: &CalibrationResult,
+        written: &[(DocumentKind, &Path)],
+        within_limits: Option<bool>,
+    ) -> Self {
         let document =
             |(kind, path): &(DocumentKind, &Path)| WrittenDocument { kind: *kind, path: path.display().to_string() };
         let objections: Vec<ObjectionName> = result.objections().iter().map(Into::into).collect();
@@ -121,6 +129,7 @@ impl DocumentsReport {
             written: written.iter().map(document).collect(),
             acceptable: objections.is_empty(),
             objections,
+            within_limits,
         }
     }
 

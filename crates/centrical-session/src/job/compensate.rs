@@ -53,7 +53,7 @@ pub struct CompensationRequest {
     pub record: PathBuf,
     /// File for the specific forces.
     pub out: PathBuf,
-    /// The session that says columns and units of the record; if none, readings are in the unit of the calibration's.
+    /// The session that says columns and units of the record; if none, readings are in the unit of the calibration's records.
     pub session: Option<PathBuf>,
     /// Largest specific force on each axis [m/s^2]; `None` for what the calibration allows.
     pub range: Option<f64>,
@@ -135,7 +135,7 @@ fn refuse_another(session: &Session, result: &CalibrationResult, file: &Path) ->
         return refuse(format!("a unit of the {what} {own:?}"), format!("{of:?}"));
     }
     match (OutputSummary::of(session), &result.output) {
-        (Some(own), Some(of)) if own != *of => {
+        (Some(own), Some(of)) if own != *of && own.is_raw() && of.is_raw() => {
             let nominal = |output: &OutputSummary| {
                 format!("{} of scale {:?} and bias {:?}", output.unit, output.scale, output.bias)
             };

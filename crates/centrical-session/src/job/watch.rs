@@ -42,7 +42,11 @@ pub fn watch(
         let model = session.model()?;
         let mut following = following::Following::resume(request, &session, &model)?;
         report(WatchEvent::Begun(&model));
-        let end = following.run(stop, report)?;
+        let end = following.run(stop, report).inspect_err(|error| {
+            if !matches!(error, Error::Stopped(_)) {
+                report(WatchEvent::Failed(error));
+            }
+        })?;
         report(WatchEvent::Followed(&model));
         if let Some(end) = end {
             return Ok(end);

@@ -102,7 +102,7 @@ pub enum ReductionError {
     /// The ramps fit the other sense of rotation.
     #[error(
         "the {ramps} ramps fit the other sense of rotation: found {part:.2} times the expected pull across the arm, \
-         expected 1; the sign of rotation is wrong, or that of the newtonometer across the arm"
+         expected 1; the sign of rotation is wrong, that of the newtonometer across the arm, or the order of the columns"
     )]
     Rotation {
         /// Ramps that were compared.

@@ -6,8 +6,8 @@ use centrical::{ErrorModel, Term};
 use centrical_table::LARGEST_NUMBER;
 
 use super::schema::{CalibrationResult, ConvergenceSummary, ObservabilitySummary, ParameterEstimate};
-use crate::experiment::{OutputUnit, RAW_OUTPUT};
-use crate::quantity::Quantity;
+use crate::experiment::RAW_OUTPUT;
+use crate::quantity::{Dimension, Quantity};
 
 /// Relative difference of a variance from the square of a standard uncertainty that may be computed in another way: rounding makes some 1e-9 of it.
 const ROUNDING: f64 = 1e-6;
@@ -66,12 +66,13 @@ fn of_gravity(result: &CalibrationResult) -> Option<Contradiction> {
     Some((format!("model.gravity = {}", not.found), not.expected))
 }
 
-/// Raw output has a unit that sessions know, and a scale.
+/// The output has a unit that sessions know, and a scale.
 fn of_output(result: &CalibrationResult) -> Option<Contradiction> {
     let output = result.output.as_ref()?;
-    if OutputUnit::named(&output.unit) == OutputUnit::Acceleration {
+    if !output.is_raw() && Dimension::Acceleration.factor(&output.unit).is_none() {
         let known = RAW_OUTPUT.map(|(_, unit, _)| unit);
-        return Some((format!("raw output in {:?}", output.unit), format!("one of {}", known.join(", "))));
+        let expected = format!("{} or one of {}", known.join(", "), Dimension::Acceleration.unit_list());
+        return Some((format!("output in {:?}", output.unit), expected));
     }
     let is_scale = |scale: &f64| scale.is_normal();
     (!output.scale.iter().all(is_scale))

@@ -123,16 +123,29 @@ pub fn unit_name(model: &str, serial: &str) -> String {
 }
 
 impl OutputSummary {
-    /// That of a session, none if its unit puts out an acceleration.
+    /// That of a session, none if its records are in m/s^2. Columns in several units of acceleration have no unit together.
     pub(crate) fn of(session: &Session) -> Option<Self> {
         let columns = &session.columns.f;
+        let is_one_unit = columns.iter().all(|column| column.unit == columns[0].unit);
+        let is_other = session.output_unit != OutputUnit::Acceleration
+            || columns.iter().any(|column| column.scale.factor != 1.0) && is_one_unit;
         // The reciprocal of a reciprocal is the number to 15 digits.
         let written = |scale: f64| format!("{scale:.14e}").parse().unwrap_or(scale);
-        (session.output_unit != OutputUnit::Acceleration).then(|| Self {
+        is_other.then(|| Self {
             unit: columns[0].unit.clone(),
             scale: [0, 1, 2].map(|axis| written(1.0 / columns[axis].scale.factor)),
             bias: [0, 1, 2].map(|axis| columns[axis].scale.offset),
         })
+    }
+
+    /// Whether it is no acceleration, so that the estimates are relative to its scale and bias.
+    pub fn is_raw(&self) -> bool {
+        OutputUnit::named(&self.unit) != OutputUnit::Acceleration
+    }
+
+    /// The readings [m/s^2] of outputs.
+    pub fn readings(&self, raw: [f64; 3]) -> [f64; 3] {
+        [0, 1, 2].map(|axis| (raw[axis] - self.bias[axis]) * (1.0 / self.scale[axis]))
     }
 
     /// Columns of a record in that unit.

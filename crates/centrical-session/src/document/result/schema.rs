@@ -33,7 +33,7 @@ pub struct CalibrationResult {
     pub session: SessionSummary,
     /// The model that was fitted.
     pub model: ModelSummary,
-    /// How the raw output of the unit was taken to m/s^2, for a unit that does not put out an acceleration.
+    /// How the output of the unit was taken to m/s^2, unless its records are in m/s^2.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub output: Option<OutputSummary>,
     /// The error model in other axes, if it was stated in such.
@@ -125,14 +125,14 @@ pub struct SessionSummary {
     pub text: String,
 }
 
-/// The nominal scale and bias by which raw output was taken to readings: `f' = (raw - bias) / scale`.
+/// The scale and bias by which the output of the unit was taken to readings: `f' = (raw - bias) / scale`; nominal ones of raw output.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct OutputSummary {
-    /// Unit of the raw output, as the session names it: `counts`, `V`.
+    /// Unit of the output, as the session names it: `counts`, `V`, `g`.
     pub unit: String,
-    /// Nominal scale of each newtonometer [raw unit per m/s^2].
+    /// Scale of each newtonometer [unit per m/s^2].
     pub scale: [f64; 3],
-    /// Raw output of each at no specific force [raw unit].
+    /// Output of each at no specific force [unit].
     pub bias: [f64; 3],
 }
 

@@ -78,6 +78,32 @@ pub(super) fn what(name: &str, unit: Option<&str>) -> What {
     }
 }
 
+/// Puts three readings in the order of their axes where their names differ in nothing else: `acc_z`, `acc_y`, `acc_x`.
+pub(super) fn sort_by_axis(readings: &mut [Label]) {
+    let names: Vec<Vec<char>> =
+        readings.iter().map(|label| label.column.to_string().to_lowercase().chars().collect()).collect();
+    let [a, b, c] = names.as_slice() else { return };
+    if a.len() != b.len() || b.len() != c.len() {
+        return;
+    }
+    let differing = (0..a.len()).map(|n| [a[n], b[n], c[n]]).filter(|[a, b, c]| a != b || b != c);
+    let mut orders: Vec<Option<[usize; 3]>> = differing.map(order_of_axes).collect();
+    orders.dedup();
+    if let [Some(order)] = orders[..] {
+        let sorted: Vec<Label> = order.into_iter().map(|n| readings[n].clone()).collect();
+        readings.clone_from_slice(&sorted);
+    }
+}
+
+/// Where the first, second and third of three axes stand.
+fn order_of_axes(letters: [char; 3]) -> Option<[usize; 3]> {
+    let order_in = |axes: [char; 3]| {
+        let [first, second, third] = axes.map(|axis| letters.iter().position(|letter| *letter == axis));
+        Some([first?, second?, third?])
+    };
+    [['x', 'y', 'z'], ['1', '2', '3'], ['0', '1', '2']].into_iter().find_map(order_in)
+}
+
 /// The column of time of a table as text, if its header names one.
 pub fn time_column(file: &Path) -> Option<String> {
     let form = text_form(file).ok()??;
@@ -157,6 +183,17 @@ mod tests {
         for (name, unit, holds) in cases {
             let label = Label::of_text(name, None);
             assert_eq!((label.unit, what(name, label.unit)), (unit, holds), "{name}");
+        }
+        let sorted = |names: [&str; 3]| {
+            let mut labels = names.map(|name| Label::of_text(name, None));
+            sort_by_axis(&mut labels);
+            labels.map(|label| label.column.to_string())
+        };
+        assert_eq!(sorted(["f2", "f3", "f1"]), ["f1", "f2", "f3"]);
+        assert_eq!(sorted(["Acc Z [g]", "Acc Y [g]", "Acc X [g]"]), ["Acc X [g]", "Acc Y [g]", "Acc Z [g]"]);
+        assert_eq!(sorted(["a2 (z)", "a1 (y)", "a0 (x)"]), ["a0 (x)", "a1 (y)", "a2 (z)"]);
+        for as_they_stand in [["up", "left", "fore"], ["a2 (x)", "a1 (y)", "a3 (z)"], ["s3", "s7", "s9"]] {
+            assert_eq!(sorted(as_they_stand), as_they_stand);
         }
         assert_eq!(what("gx", Some("m/s^2")), What::Reading);
         assert_eq!(what("n", Some("rpm")), What::Speed);

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use centrical_table::{ColumnName, Extent, Field, Rule, TableReader, TextForm, text_form};
 
-use super::column_names::{Label, What, what};
+use super::column_names::{Label, What, sort_by_axis, what};
 use crate::error::Error;
 
 /// Folders are searched to this depth.
@@ -168,6 +168,7 @@ fn of_text(path: PathBuf, form: TextForm) -> FileColumns {
     if file.readings.len() == 2 {
         file.readings.clear();
     }
+    sort_by_axis(&mut file.readings);
     file
 }
 

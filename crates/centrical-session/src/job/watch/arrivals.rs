@@ -33,6 +33,8 @@ pub struct Watch<'s> {
     has_rests: bool,
     /// Mountings whose plateaus have all come.
     finished: Vec<ReducedMounting>,
+    /// What their records looked like when they were read, and the last time.
+    taken: Vec<[Look; 2]>,
     /// Measured speeds of the plateaus that have come, by set point.
     speeds: BTreeMap<usize, MeasuredSpeed>,
     /// Plateaus of the mounting after them that have come.
@@ -55,6 +57,13 @@ struct Look {
     followed: bool,
 }
 
+impl Look {
+    /// Whether the record was not written to between two looks.
+    fn is_as(&self, other: &Self) -> bool {
+        (self.bytes, self.changed) == (other.bytes, other.changed)
+    }
+}
+
 impl<'s> Watch<'s> {
     /// Before the first look at the records of `session`.
     pub fn new(session: &'s Session, quiet: Duration) -> Self {
@@ -63,6 +72,7 @@ impl<'s> Watch<'s> {
             quiet,
             has_rests: false,
             finished: Vec::new(),
+            taken: Vec::new(),
             speeds: BTreeMap::new(),
             come: 0,
             seen: None,
@@ -118,7 +128,7 @@ impl<'s> Watch<'s> {
 
     /// Plateaus that have come since the last look: rests in attitudes of their own that the session has, with the first look, and
     /// those on the arm in the order of the schedule, each with the noise of its own and the
-    /// earlier mountings as far as it was known.
+    /// earlier mountings as far as it was known. Plateaus of a record that was replaced come again.
     ///
     /// A record that cannot be made out and has not been left alone yet is waited for, with a [`Watch::note`]. Where `stop` is raised, the
     /// record that is read and those after it wait for another look.
@@ -138,6 +148,7 @@ impl<'s> Watch<'s> {
             arrivals.extend(fresh.map(observation));
             self.come = table.rows.len();
         } else {
+            self.look_at_finished(stop, &mut arrivals)?;
             let is_wanted = |finished: usize| finished < self.session.mountings.len() && !stop.load(Ordering::Relaxed);
             while is_wanted(self.finished.len()) && self.look_at_current(stop, &mut arrivals)? {}
         }
@@ -145,6 +156,36 @@ impl<'s> Watch<'s> {
             self.note = Some(format!("waiting for {}", file.display()));
         }
         Ok(arrivals)
+    }
+
+    /// Reads finished records again that were replaced since, once they look the same twice or have been left alone.
+    fn look_at_finished(&mut self, stop: &AtomicBool, arrivals: &mut Vec<Observation>) -> Result<(), Error> {
+        for mounting in 0..self.finished.len() {
+            let file = self.session.mountings[mounting].record.as_deref();
+            // While it is replaced it may be gone for a moment.
+            let Some(look) = file.and_then(|file| self.look_of(mounting, file)) else { continue };
+            let [taken, last] = self.taken[mounting];
+            if look.is_as(&taken) {
+                continue;
+            }
+            self.taken[mounting][1] = look;
+            if !look.left_alone && !look.is_as(&last) {
+                continue;
+            }
+            match self.read(mounting, look, stop).and_then(|record| self.whole(mounting, &record)) {
+                Err(Error::Stopped(_)) => return Ok(()),
+                Err(error) if !look.left_alone => self.note = Some(format!("not yet: {error}")),
+                Err(error) => return Err(error),
+                Ok((reduced, _)) => {
+                    self.finished[mounting] = reduced.clone();
+                    self.taken[mounting] = [look; 2];
+                    self.note_speeds(mounting, &reduced);
+                    arrivals.extend(self.observations(mounting, &reduced));
+                    self.refuse_copies()?;
+                }
+            }
+        }
+        Ok(())
     }
 
     /// Looks at the record of the first mounting that is not finished; whether it is now.
@@ -164,6 +205,10 @@ impl<'s> Watch<'s> {
         }
         if self.seen == Some(look) {
             return Ok(false);
+        }
+        if self.seen.is_some_and(|seen| look.bytes < seen.bytes) {
+            // Another record: its plateaus come again.
+            self.come = 0;
         }
         self.seen = Some(look);
         self.note = None;
@@ -187,6 +232,7 @@ impl<'s> Watch<'s> {
                 self.arrive(mounting, &reduced, complete, arrivals);
                 if finished {
                     self.finished.push(reduced);
+                    self.taken.push([look; 2]);
                     self.refuse_copies()?;
                     (self.come, self.seen) = (0, None);
                     return Ok(true);
@@ -292,18 +338,22 @@ impl<'s> Watch<'s> {
             return;
         }
         self.note_speeds(mounting, reduced);
+        arrivals.extend(self.observations(mounting, reduced).into_iter().take(complete).skip(self.come));
+        self.come = complete;
+    }
+
+    /// The plateaus of a mounting with the noise of all that are known.
+    fn observations(&self, mounting: usize, reduced: &ReducedMounting) -> Vec<Observation> {
         let noise = NoiseModel::pool(self.finished.iter().chain([reduced]));
         let means = plateau_means(reduced, &noise);
         let set_points = self.session.experiment.set_points.iter().enumerate();
         let there = set_points.filter(|(_, set_point)| set_point.mounting == mounting).map(|(index, _)| index);
-        let fresh = there.zip(means).take(complete).skip(self.come);
         let observation = |(set_point, plateau): (usize, centrical::reduction::PlateauMean)| Observation {
             set_point,
             mean: plateau.mean,
             covariance: plateau.covariance,
         };
-        arrivals.extend(fresh.map(observation));
-        self.come = complete;
+        there.zip(means).map(observation).collect()
     }
 
     fn schedule(&self, mounting: usize) -> Vec<ScheduledPlateau> {

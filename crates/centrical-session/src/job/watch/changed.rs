@@ -1,6 +1,4 @@
-//! Plateaus whose files have changed since they were taken up, which happens while no watch runs.
-
-use std::path::Path;
+//! Plateaus whose files have changed since they were taken up.
 
 use centrical::Observation;
 
@@ -25,9 +23,9 @@ impl Changed {
         }
     }
 
-    /// What to say of them, if there are any; `state` is the file that keeps what was read.
-    pub fn told(&mut self, session: &Session, state: &Path) -> Option<String> {
-        let changed = std::mem::take(&mut self.0);
+    /// What to say of them, if there are any.
+    pub fn text(&self, session: &Session) -> Option<String> {
+        let changed = &self.0;
         let PlateauName { mounting, plateau } = PlateauName::of(session, *changed.first()?);
         let first = match session.rest_of(mounting - 1) {
             Some(rest) => format!("rest {rest}"),
@@ -37,7 +35,6 @@ impl Changed {
             1 => format!("{first} reads"),
             count => format!("{first} and {} more read", count - 1),
         };
-        let rest = "what is shown rests on the earlier readings, and begins anew without";
-        Some(format!("{whole} otherwise than before; {rest} {}", state.display()))
+        Some(format!("{whole} otherwise than before; the watch begins anew with the files as they are"))
     }
 }

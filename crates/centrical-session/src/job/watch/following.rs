@@ -4,6 +4,7 @@ use std::collections::HashSet;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
 use std::time::{Duration, Instant};
+use std::{fs, io};
 
 use centrical::fit::{Follower, Progress};
 use centrical::plan::{Benefit, Criterion, NextPlateau, PlanError, ReadingRange};
@@ -104,7 +105,8 @@ impl<'a> Following<'a> {
     }
 
     /// Looks at the session again and again, until its schedule is complete or `stop` is raised; `None` when the files of further
-    /// rests have come, and the watch has to go on with the session [`rests::with_rests_there`].
+    /// rests have come, and the watch has to go on with the session [`rests::with_rests_there`], or plateaus that were taken up read
+    /// otherwise, and it has to begin anew.
     ///
     /// # Errors
     /// [`Error`] when a finished record is wrong, or the folder does not take the state.
@@ -153,8 +155,10 @@ impl<'a> Following<'a> {
             if count > 0 {
                 self.keep()?;
             }
-            if let Some(note) = self.changed.told(self.session, &self.request.out.join(STATE_FILE)) {
+            if let Some(note) = self.changed.text(self.session) {
                 report(WatchEvent::Waiting(&note));
+                self.forget()?;
+                return Ok(None);
             }
             if let Some(board) = &mut board {
                 board.pace(self.state.plateaus.len());
@@ -251,6 +255,15 @@ impl<'a> Following<'a> {
     fn keep(&mut self) -> Result<(), Error> {
         self.kept = Instant::now();
         self.state.write(&self.request.out.join(STATE_FILE))
+    }
+
+    /// Removes the state: the next watch begins anew.
+    fn forget(&self) -> Result<(), Error> {
+        let file = self.request.out.join(STATE_FILE);
+        match fs::remove_file(&file) {
+            Err(error) if error.kind() != io::ErrorKind::NotFound => Err(Error::writing(&file, error)),
+            _ => Ok(()),
+        }
     }
 
     /// What is known after the last plateau that has arrived; `None` before the first.

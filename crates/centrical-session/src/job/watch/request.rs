@@ -8,6 +8,7 @@ use centrical::MeasurementModel;
 use super::board::LiveRequest;
 use super::progress::WatchProgress;
 use crate::document::CalibrationResult;
+use crate::error::Error;
 use crate::experiment::PlateauName;
 
 /// How a session is watched.
@@ -53,6 +54,8 @@ pub enum WatchEvent<'a> {
         /// Since it changed last.
         age: Duration,
     },
+    /// The watch ends with this error.
+    Failed(&'a Error),
 }
 
 /// How a watch ends.

@@ -8,6 +8,9 @@ use crate::reduction::record::RecordSlice;
 use crate::reduction::simd::lanes::{LANES, joined, range, sum, widest};
 use crate::statistics::{MAD, cut, median};
 
+/// No reading is larger [m/s^2].
+const LARGEST: f64 = 1e5;
+
 /// The samples of one block of time, condensed.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Block {
@@ -76,8 +79,9 @@ impl WithSimd for OneAxis<'_> {
     fn with_simd<S: Simd>(self, _: S) -> Axis {
         let Self { f, cut } = self;
         let [low, high] = range(f);
-        // A converted unit leaves steps of f64's own rounding.
-        let rounding = (low.abs().max(high.abs()) * 1e-12).max(f64::MIN_POSITIVE);
+        // A converted unit leaves steps of f64's own rounding. What is larger than any reading is the sign of a lost one, such as 1e30, and
+        // hides no step.
+        let rounding = (low.abs().max(high.abs()).min(LARGEST) * 1e-12).max(f64::MIN_POSITIVE);
         let Walk { sum, step, fresh, repeated, squares } = Walk::along(f, low, rounding);
         // Half-filled blocks lie beside a gap: too few samples for a median that a spike cannot move.
         let level = if f.len() > SAMPLES / 2 { level(f, sum, [low, high], step, cut) } else { None };
