@@ -567,6 +567,25 @@ fn a_constant_record_has_no_plateaus() {
     }
 }
 
+/// A recorder that is started on the only plateau and stopped there.
+#[test]
+fn a_record_of_one_plateau_is_found() {
+    for omega in [0.0, 14.0, 60.0] {
+        let run = Stream { omegas: vec![omega], lengths: vec![60.0], ..Stream::default() };
+        let whole = run.record();
+        let [start, end] = run.windows()[0];
+        let kept = whole.t.partition_point(|t| *t < start + 5.0)..whole.t.partition_point(|t| *t < end);
+        let record = Record { t: whole.t[kept.clone()].to_vec(), f_z: whole.f_z.map(|f| f[kept.clone()].to_vec()) };
+        let reduced = reduce(&record, None, &run.schedule()).unwrap();
+        let mean = plateau_means(&reduced, &NoiseModel::pool([&reduced]))[0].clone();
+        assert!(
+            chi_squared(&run, 0, &mean) < 20.0 && mean.window[1] - mean.window[0] > 50.0,
+            "{omega}: {:?}",
+            mean.window
+        );
+    }
+}
+
 #[test]
 fn noise_alone_has_no_plateaus() {
     let run = Stream { omegas: vec![0.0], lengths: vec![60.0], ..Stream::default() };

@@ -72,7 +72,9 @@ impl<'a> Evidence<'a> {
         for f in &blocks.f_z {
             (low, high) = (low.inf(f), high.sup(f));
         }
-        let span = (high - low).max().max(blocks.sample_noise.max());
+        // A record of one plateau spans its noise alone: on the way there the readings spanned half of its level at least.
+        let level = low.abs().sup(&high.abs()).max();
+        let span = (high - low).max().max(0.5 * level).max(blocks.sample_noise.max());
         let noise = blocks.sample_noise.map(|noise| noise.max(DEAD * span));
         Self { blocks, span, noise, levels, sums }
     }
