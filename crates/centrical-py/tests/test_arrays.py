@@ -117,6 +117,11 @@ def test_misuse(example, arrays, tmp_path):
     refused(ct.InputError, "mounting 5: record too short", example, empty)
     nan = dict(records) | {2: (np.where(np.arange(len(t)) == 700, np.nan, t), f)}
     refused(ct.InputError, "mounting 2: sample 701: found time NaN", example, nan)
+    infinite = f.copy()
+    infinite[9, 1] = np.inf
+    refused(ValueError, r"records\[1\], row 10: found inf, expected a number", example, {1: (t, infinite)})
+    refused(ValueError, "telemetry: found mounting 13, which has no record", example, records, telemetry={13: (t, t)})
+    refused(ValueError, r"telemetry\[1\], row 1: found nan", example, records, telemetry={1: (t[:3], np.full(3, np.nan))})
     refused(ValueError, "plateaus: found no column 'speed'", example, plateaus={"mounting": [1.0]})
     refused(ct.NoSuchFileError, "no such file", tmp_path / "no.toml", records)
     (tmp_path / "experiment.toml").write_bytes(b"\xff\xfe")

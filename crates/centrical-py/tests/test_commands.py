@@ -128,8 +128,12 @@ def test_compare(program, result, result_file, tmp_path):
     assert given.to_json() == program("compare", result_file, other, "--years", "2")
     assert (tmp_path / "drift.svg").read_text().startswith("<svg")
     assert ct.compare([result, ct.read_result(result_file)], years=1.0).agree
-    with pytest.raises(ValueError, match="found 1, expected two or more"):
-        ct.compare([result])
+    for alone in ([result], result, str(result_file)):
+        with pytest.raises(ValueError, match="found 1, expected two or more"):
+            ct.compare(alone)
+    for years in (0.0, -1.0, float("nan"), float("inf")):
+        with pytest.raises(ValueError, match="years: found .*, expected a number above 0"):
+            ct.compare([result_file, other], years=years)
 
 
 def test_reduce(program, tmp_path):

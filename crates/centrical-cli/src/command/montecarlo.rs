@@ -49,9 +49,11 @@ fn runs(text: &str) -> Result<usize, String> {
 pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let inside = arguments.session.join("experiment.toml");
     let file = if arguments.session.is_dir() { &inside } else { &arguments.session };
-    let mut case = match read_plan(file)? {
-        Some(plan) => MonteCarloCase::planned(plan, arguments.noise)?,
-        None => measured(&Session::read(file)?, arguments.printing)?,
+    let mut case = if let Some(plan) = read_plan(file)? {
+        MonteCarloCase::planned(plan, arguments.noise)?
+    } else {
+        MonteCarloCase::refuse_noise(file, arguments.noise)?;
+        measured(&Session::read(file)?, arguments.printing)?
     };
     if arguments.typical {
         case = case.of_typical_unit();

@@ -60,6 +60,8 @@ def from_arrays(
     traces = _by_mounting("telemetry", telemetry or {})
     counted = _by_mounting("pulses", pulses or {})
     _refuse_gaps(numbered)
+    _refuse_strangers("telemetry", traces, numbered)
+    _refuse_strangers("pulses", counted, numbered)
     mountings = [_mounting(m, numbered[m], traces.get(m), counted.get(m)) for m in sorted(numbered)]
     return ArraySession(text, file, mountings, None)
 
@@ -123,6 +125,18 @@ def _refuse_gaps(records: dict[int, Any]) -> None:
         raise ValueError(f"records: found no record of mounting {missing[0]}, expected one of each")
 
 
+def _refuse_strangers(argument: str, of_mountings: dict[int, Any], records: dict[int, Any]) -> None:
+    strange = sorted(set(of_mountings) - set(records))
+    if strange:
+        raise ValueError(f"{argument}: found mounting {strange[0]}, which has no record, expected mountings 1 to {len(records)}")
+
+
+def _refuse_wrong(place: str, values: np.ndarray, wrong: np.ndarray, expected: str) -> None:
+    rows = np.flatnonzero(wrong)
+    if rows.size:
+        raise ValueError(f"{place}, row {rows[0] + 1}: found {values[rows[0]]}, expected {expected}")
+
+
 def _mounting(m: int, record: Any, trace: Any, pulses: Any) -> tuple[Any, ...]:
     place = f"records[{m}]"
     t, f = _pair(place, record, "(t, f)")
@@ -130,10 +144,14 @@ def _mounting(m: int, record: Any, trace: Any, pulses: Any) -> tuple[Any, ...]:
     if readings.ndim != 2 or readings.shape[1] != 3:
         raise ValueError(f"{place}: found readings of shape {readings.shape}, expected (n, 3)")
     columns = [_column(place, readings[:, axis]) for axis in range(3)]
+    for column in columns:
+        _refuse_wrong(place, column, np.isinf(column), "a number, or NaN where a reading is missing")
     telemetry = None
     if trace is not None:
         times, speeds = _pair(f"telemetry[{m}]", trace, "(t, speed)")
         telemetry = [_column(f"telemetry[{m}]", times), _column(f"telemetry[{m}]", speeds)]
+        for column in telemetry:
+            _refuse_wrong(f"telemetry[{m}]", column, ~np.isfinite(column), "a number")
     return (_column(place, t), columns, telemetry, None if pulses is None else _column(f"pulses[{m}]", pulses))
 
 

@@ -7,6 +7,7 @@ a second.
 
 from __future__ import annotations
 
+import math
 import os
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any
@@ -283,7 +284,10 @@ def compare(
     >>> ct.compare([result, result]).agree
     True
     """
-    natives = [result.native if isinstance(result, Result) else result for result in results]
+    if years is not None and not 0.0 < years < math.inf:
+        raise ValueError(f"years: found {years}, expected a number above 0")
+    given = [results] if isinstance(results, Result) else paths(results)
+    natives = [result.native if isinstance(result, Result) else result for result in given]
     return Document(_native.compare(natives, years, other_units, svg))
 
 
@@ -311,7 +315,7 @@ def series(
     1
     """
     with Bar("calibrating") as shown:
-        return Document(_native.series(list(sessions), out, method, jobs, rows_only, reduced, shown))
+        return Document(_native.series(paths(sessions), out, method, jobs, rows_only, reduced, shown))
 
 
 def compensate(

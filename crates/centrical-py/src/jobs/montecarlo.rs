@@ -32,6 +32,7 @@ pub fn montecarlo(
             MonteCarloCase::planned(plan, noise)?
         } else {
             let session = subject.read()?;
+            MonteCarloCase::refuse_noise(&session.file, noise)?;
             work.expect(2 * session.record_bytes());
             MonteCarloCase::measured(&session, &|bytes| work.advance(bytes))?
         };

@@ -209,7 +209,13 @@ fn ppm(uncertainty: f64) -> String {
 
 /// A positive number to two or three significant digits.
 fn three(number: f64) -> String {
-    if number >= 10.0 { format!("{number:.0}") } else { format!("{number:.2}") }
+    let hundredths = format!("{number:.2}");
+    match hundredths.as_str() {
+        _ if number >= 10.0 => format!("{number:.0}"),
+        // What is wrong has to show.
+        "1.00" => format!("{number:.5}"),
+        _ => hundredths,
+    }
 }
 
 fn comma(text: &str) -> String {

@@ -161,6 +161,14 @@ fn mountings(at: &TomlPath, form: &Form) -> Result<Vec<MountingTable>, Error> {
 /// Every speed that the machine and the unit bear, and every angle at rest, in every mounting.
 fn set_points(at: &TomlPath, table: &CandidatesTable, experiment: &Experiment) -> Result<Vec<SetPoint>, Error> {
     let largest = experiment.mountings.iter().map(|m| m.arm_y.x).fold(0.0, f64::max);
+    for (n, mounting) in experiment.mountings.iter().enumerate().filter(|(_, m)| m.arm_y.x > 0.0) {
+        if experiment.mountings[..n].contains(mounting) {
+            return Err(at.unexpected("radii", format!("{} m twice", mounting.arm_y.x), "each radius once"));
+        }
+    }
+    if table.speeds.is_some() && table.loads.is_some() {
+        return Err(at.unexpected("loads", "loads beside speeds", "one of them"));
+    }
     let mut speeds = Vec::new();
     if let Some(steps) = &table.speeds {
         speeds.extend(values(at, "speeds", steps, Dimension::Speed, FASTEST)?);

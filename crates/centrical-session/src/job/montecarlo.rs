@@ -1,6 +1,6 @@
 //! The whole calibration repeated on drawn readings, of a session or of a plan.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use centrical::plan::unit_of;
 use centrical::uncertainty::{Method, MonteCarlo, Settings, monte_carlo};
@@ -9,7 +9,7 @@ use nalgebra::Vector3;
 
 use super::calibrate::Problem;
 use crate::document::{MonteCarloReport, Repeated, RepeatedFit};
-use crate::error::Error;
+use crate::error::{Error, Place};
 use crate::experiment::{Plan, Session};
 
 /// How often what is repeated.
@@ -75,6 +75,15 @@ impl MonteCarloCase {
             |Weight { set_point, covariance }| Observation { set_point, mean: Vector3::zeros(), covariance };
         let observations = weights.into_iter().map(observation).collect();
         Ok(Self { model, truth, file, observations })
+    }
+
+    /// Refuses `noise` for a session, whose means have their own.
+    ///
+    /// # Errors
+    /// [`Error::Content`] if there is some.
+    pub fn refuse_noise(session: &Path, noise: Option<f64>) -> Result<(), Error> {
+        let expected = "no noise, as the means of a session have their own, or a plan";
+        noise.map_or(Ok(()), |ug| Err(Error::content(session, Place::Whole, format!("a noise of {ug} ug"), expected)))
     }
 
     /// Takes a unit of typical errors with alternating signs for the true one.

@@ -262,6 +262,16 @@ fn candidates_costs_and_targets() {
             "[candidates], radii: found none, expected at least one radius",
         ),
         (
+            "radii = [\"0.5 m\", \"0.25 m\"]",
+            "radii = [\"0.5 m\", \"500 mm\"]",
+            "[candidates], radii: found 0.5 m twice, expected each radius once",
+        ),
+        (
+            "repeats = 2",
+            "speeds = [\"300 rpm\"]",
+            "[candidates], loads: found loads beside speeds, expected one of them",
+        ),
+        (
             "count = 20",
             "count = 1",
             "[candidates], loads: found 1 from \"5 g\" to \"200 g\", expected two or more steps, rising",
