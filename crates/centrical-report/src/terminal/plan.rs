@@ -119,7 +119,7 @@ fn one_mounting(screen: &mut Screen, number: usize, mounting: &PlannedMounting) 
             "MOUNTING {number}  position {}, radius {} m, {}; without it {}",
             mounting.position,
             mounting.radius,
-            span(mounting.reason.time),
+            span(mounting.time),
             lost(&mounting.reason)
         ),
     );

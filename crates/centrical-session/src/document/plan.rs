@@ -81,6 +81,8 @@ pub struct PlannedMounting {
     pub position: String,
     /// Radius [m].
     pub radius: f64,
+    /// Its time with its set-up [s]: the times of all mountings, and of rests beside the arm, are that of the plan.
+    pub time: f64,
     /// Why it is there.
     pub reason: ReasonReport,
     /// Its plateaus.

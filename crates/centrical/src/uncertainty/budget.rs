@@ -138,12 +138,12 @@ impl Budget {
         self.covariance(j, j).map(f64::sqrt)
     }
 
-    /// Whether the null space leaves more doubt in parameter `j` than a tenth of the variance that `fit` weighs. Products of two
+    /// Whether the null space leaves more doubt in parameter `j` than a tenth of the variance of all sources, which `fit` knows. Products of two
     /// unknowns let the lost combinations in, and only the hold keeps them ([`crate::NULL_HOLD`] typical magnitudes), which is
     /// not a source of the budget. `fit` is the fit of this budget.
     pub fn is_affected_by_null_space(&self, fit: &Fit, j: usize) -> bool {
-        let weighed: f64 = self.contributions.iter().filter(|c| c.source.is_weighed()).map(|c| c.variance(j)).sum();
-        fit.covariance(j, j).is_some_and(|all| all > (1.0 + AFFECTED) * weighed)
+        let known: f64 = self.contributions.iter().map(|c| c.variance(j)).sum();
+        fit.covariance(j, j).is_some_and(|all| all > (1.0 + AFFECTED) * known)
     }
 
     /// Correlation of the estimates of parameters `i` and `j`, if both are determined.

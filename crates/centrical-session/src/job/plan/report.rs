@@ -75,6 +75,10 @@ fn mountings(task: &Task, plan: &Plan, rationale: &Rationale) -> Vec<PlannedMoun
     let visits = &plan.schedule.visits;
     let mut mountings = Vec::new();
     let on_arm = experiment.mountings_on_arm().zip(&rationale.set_ups);
+    let time_until = |m: usize| {
+        let is_before = |visit: &&Visit| experiment.set_points[visit.candidate].mounting < m;
+        task.candidates.time_of(&visits.iter().filter(is_before).copied().collect::<Vec<_>>())
+    };
     for (m, of_mounting) in on_arm.filter_map(|(m, reason)| Some((m, reason.as_ref()?))) {
         let there = |n: &usize| experiment.set_points[visits[*n].candidate].mounting == m;
         let plateau = |n: usize| {
@@ -89,6 +93,7 @@ fn mountings(task: &Task, plan: &Plan, rationale: &Rationale) -> Vec<PlannedMoun
         mountings.push(PlannedMounting {
             position: experiment.positions[experiment.mountings[m].position].id.clone(),
             radius: experiment.mountings[m].arm_y.x,
+            time: time_until(m + 1) - time_until(m),
             reason: reason(task, of_mounting),
             plateaus: (0..visits.len()).filter(there).map(plateau).collect(),
         });
