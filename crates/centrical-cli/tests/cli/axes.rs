@@ -146,7 +146,8 @@ fn a_result_agrees_with_itself() {
     refused(&|r| r["fit"]["chi_squared"] = (-1.0).into(), "zero or more");
     let raw =
         |unit: &str, scale: f64| serde_json::json!({"unit": unit, "scale": [1.0, scale, 1.0], "bias": [0.0, 0.0, 0.0]});
-    refused(&|r| r["output"] = raw("mg", 1.0), "one of counts, V");
+    refused(&|r| r["output"] = raw("mV", 1.0), "one of counts, V");
+    refused(&|r| r["output"] = raw("mg", 1.0), "per m/s^2 and no bias");
     refused(&|r| r["output"] = raw("counts", 0.0), "numbers other than zero");
     let of_unit = |r: &mut Value| {
         let parameters = r["parameters"].as_array_mut().unwrap();

@@ -66,13 +66,21 @@ fn of_gravity(result: &CalibrationResult) -> Option<Contradiction> {
     Some((format!("model.gravity = {}", not.found), not.expected))
 }
 
-/// The output has a unit that sessions know, and a scale.
+/// The output has a unit that sessions know, and a scale: a unit of acceleration its own.
 fn of_output(result: &CalibrationResult) -> Option<Contradiction> {
     let output = result.output.as_ref()?;
-    if !output.is_raw() && Dimension::Acceleration.factor(&output.unit).is_none() {
-        let known = RAW_OUTPUT.map(|(_, unit, _)| unit);
-        let expected = format!("{} or one of {}", known.join(", "), Dimension::Acceleration.unit_list());
-        return Some((format!("output in {:?}", output.unit), expected));
+    if !output.is_raw() {
+        let Some(factor) = Dimension::Acceleration.factor(&output.unit) else {
+            let known = RAW_OUTPUT.map(|(_, unit, _)| unit);
+            let expected = format!("one of {}, {}", known.join(", "), Dimension::Acceleration.unit_list());
+            return Some((format!("output in {:?}", output.unit), expected));
+        };
+        let is_its_own = |scale: &f64| (scale * factor - 1.0).abs() < ROUNDING;
+        if !output.scale.iter().all(is_its_own) || output.bias != [0.0; 3] {
+            let found =
+                format!("output.scale = {:?} and output.bias = {:?} in {}", output.scale, output.bias, output.unit);
+            return Some((found, format!("{:e} per m/s^2 and no bias", 1.0 / factor)));
+        }
     }
     let is_scale = |scale: &f64| scale.is_normal();
     (!output.scale.iter().all(is_scale))

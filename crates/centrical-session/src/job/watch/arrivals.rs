@@ -14,6 +14,7 @@ use centrical::reduction::{
 };
 use centrical_table::Extent;
 
+use super::changed::reads_otherwise;
 use super::growth::Growth;
 use super::rests;
 use crate::error::Error;
@@ -35,6 +36,8 @@ pub struct Watch<'s> {
     finished: Vec<ReducedMounting>,
     /// What their records looked like when they were read, and the last time.
     taken: Vec<[Look; 2]>,
+    /// The plateaus that have come, by set point, as they read then.
+    arrived: BTreeMap<usize, Observation>,
     /// Measured speeds of the plateaus that have come, by set point.
     speeds: BTreeMap<usize, MeasuredSpeed>,
     /// Plateaus of the mounting after them that have come.
@@ -73,6 +76,7 @@ impl<'s> Watch<'s> {
             has_rests: false,
             finished: Vec::new(),
             taken: Vec::new(),
+            arrived: BTreeMap::new(),
             speeds: BTreeMap::new(),
             come: 0,
             seen: None,
@@ -128,7 +132,7 @@ impl<'s> Watch<'s> {
 
     /// Plateaus that have come since the last look: rests in attitudes of their own that the session has, with the first look, and
     /// those on the arm in the order of the schedule, each with the noise of its own and the
-    /// earlier mountings as far as it was known. Plateaus of a record that was replaced come again.
+    /// earlier mountings as far as it was known. Plateaus of a record that was replaced come again if they read otherwise.
     ///
     /// A record that cannot be made out and has not been left alone yet is waited for, with a [`Watch::note`]. Where `stop` is raised, the
     /// record that is read and those after it wait for another look.
@@ -155,6 +159,9 @@ impl<'s> Watch<'s> {
         if let Some(file) = rests::awaited(self.session).filter(|_| self.has_arm()) {
             self.note = Some(format!("waiting for {}", file.display()));
         }
+        let arrived = &mut self.arrived;
+        arrivals.retain(|now| arrived.get(&now.set_point).is_none_or(|before| reads_otherwise(before, now)));
+        arrived.extend(arrivals.iter().map(|now| (now.set_point, now.clone())));
         Ok(arrivals)
     }
 

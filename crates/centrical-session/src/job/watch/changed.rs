@@ -12,13 +12,17 @@ pub(super) struct Changed(Vec<usize>);
 /// Largest change of a plateau that is read anew, in its standard uncertainties: telemetry that has come since may move its ends.
 const LARGEST_CHANGE: f64 = 3.0;
 
+/// Whether a plateau reads otherwise than `before`.
+pub(super) fn reads_otherwise(before: &Observation, now: &Observation) -> bool {
+    let change = now.mean - before.mean;
+    let squared = before.covariance.cholesky().map(|factor| change.dot(&factor.solve(&change)));
+    squared.is_some_and(|squared| squared > LARGEST_CHANGE.powi(2))
+}
+
 impl Changed {
     /// Compares a plateau with what was kept of it.
     pub fn compare(&mut self, kept: &WatchedPlateau, observation: &Observation) {
-        let kept = kept.observation();
-        let change = observation.mean - kept.mean;
-        let squared = kept.covariance.cholesky().map(|factor| change.dot(&factor.solve(&change)));
-        if squared.is_some_and(|squared| squared > LARGEST_CHANGE.powi(2)) {
+        if reads_otherwise(&kept.observation(), observation) {
             self.0.push(observation.set_point);
         }
     }
