@@ -55,7 +55,8 @@ def test_limits_of_the_unit(program, tmp_path):
     result = ct.calibrate(SESSION, laboratory=strict)
     assert result.acceptable and result.within_limits is False
     assert "UNIT NOT WITHIN ITS LIMITS" in str(result)
-    said = ct.report(result.to_json(tmp_path / "result.json") or tmp_path / "result.json", pdf=tmp_path / "c.pdf", laboratory=strict)
+    result.to_json(tmp_path / "result.json")
+    said = ct.report(tmp_path / "result.json", pdf=tmp_path / "c.pdf", laboratory=strict)
     assert said.acceptable and said.within_limits is False
     with pytest.raises(FileNotFoundError):
         ct.calibrate(SESSION, laboratory="nowhere.toml")
