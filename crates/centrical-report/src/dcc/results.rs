@@ -180,7 +180,7 @@ fn camel_case(words: &str) -> String {
 /// The nominal scale and bias of a unit that does not put out an acceleration.
 fn nominal(xml: &mut Xml, result: &CalibrationResult, language: Language) {
     let messages = language.messages();
-    let Some(OutputSummary { unit, scale, bias }) = result.output.as_ref().filter(|output| output.is_raw()) else {
+    let Some(OutputSummary { unit, scale, bias }) = result.raw_output() else {
         return;
     };
     // Counts are a number; what has no symbol in D-SI is named in words alone.

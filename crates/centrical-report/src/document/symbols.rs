@@ -23,7 +23,7 @@ pub(super) fn symbols(result: &CalibrationResult, language: Language) -> Vec<Fac
 /// The nominal scale and bias of a unit that does not put out an acceleration.
 pub(super) fn nominal_output(result: &CalibrationResult, language: Language) -> Vec<Block> {
     let messages = language.messages();
-    let Some(OutputSummary { unit, scale, bias }) = result.output.as_ref().filter(|output| output.is_raw()) else {
+    let Some(OutputSummary { unit, scale, bias }) = result.raw_output() else {
         return Vec::new();
     };
     let unit = language.unit(unit);

@@ -53,7 +53,7 @@ fn heading(screen: &mut Screen, result: &CalibrationResult) {
     screen.say(0, &joined([&session.title, &session.date]));
     let combined = if result.stated_sources().is_empty() { "" } else { "combined " };
     screen.say(0, &format!("value ± {combined}standard uncertainty (k = 1); 1 g = 9.80665 m/s^2"));
-    if let Some(OutputSummary { unit, scale, bias }) = result.output.as_ref().filter(|output| output.is_raw()) {
+    if let Some(OutputSummary { unit, scale, bias }) = result.raw_output() {
         // Six digits show which scale it is; all of them are in result.json.
         let six = |number: &f64| {
             format!("{number:.5e}").parse().map_or_else(|_| number.to_string(), |six: f64| six.to_string())

@@ -15,7 +15,7 @@ impl CalibrationResult {
         let objections = self.objections();
         let of_parameters =
             |text: fn(&ParameterEstimate) -> String| self.parameters.iter().map(text).collect::<Vec<_>>();
-        let raw_output = self.output.as_ref().filter(|output| output.is_raw());
+        let raw_output = self.raw_output();
         let (combined, covariance) = (self.combined(), self.packed_covariance());
         let (shared, priors) = (self.shared_influences(), self.row_priors());
         Row {

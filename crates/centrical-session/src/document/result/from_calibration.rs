@@ -122,6 +122,13 @@ pub fn unit_name(model: &str, serial: &str) -> String {
     }
 }
 
+impl CalibrationResult {
+    /// The raw output that the estimates are relative to; `None` of a unit that puts out an acceleration.
+    pub fn raw_output(&self) -> Option<&OutputSummary> {
+        self.output.as_ref().filter(|output| output.is_raw())
+    }
+}
+
 impl OutputSummary {
     /// That of a session, none if its records are in m/s^2. Columns in several units of acceleration have no unit together.
     pub(crate) fn of(session: &Session) -> Option<Self> {
@@ -138,8 +145,8 @@ impl OutputSummary {
         })
     }
 
-    /// Whether it is no acceleration, so that the estimates are relative to its scale and bias.
-    pub fn is_raw(&self) -> bool {
+    /// Whether it is no acceleration.
+    pub(crate) fn is_raw(&self) -> bool {
         OutputUnit::named(&self.unit) != OutputUnit::Acceleration
     }
 
