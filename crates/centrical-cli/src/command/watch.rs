@@ -70,10 +70,6 @@ pub struct Arguments {
     json: bool,
 }
 
-/// What the page shows.
-#[cfg(feature = "serve")]
-const LIVE_FILE: &str = "watch-live.json";
-
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let session = Session::read_before_rests(&arguments.session)?;
@@ -119,7 +115,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
         }
     });
     #[cfg(feature = "serve")]
-    if let (Err(error), Some(url), true) = (&end, &url, arguments.out.join(LIVE_FILE).exists()) {
+    if let (Err(error), Some(url), true) = (&end, &url, Watched::new(&arguments.out).is_there()) {
         // The page says what was wrong to one who comes later.
         say(&format!("{error}\n"));
         remain(url);
