@@ -176,6 +176,33 @@ class Parquet(Form):
         frame.to_parquet(folder / f"{stem}_speed.parquet")
 
 
+class ParquetOfPandas(Form):
+    """Parquet with names of another laboratory: stamps, units in names, a text column, the index. Rounded times bring other samples
+    into a window."""
+    rounding = 0.5
+
+    def stamps(self, frame):
+        return pandas.Timestamp("2026-10-05 09:10:00") + pandas.to_timedelta(frame["t"], unit="s")
+
+    def record(self, folder, stem, frame):
+        names = {"operator": "Ivanov", "stamp": self.stamps(frame), "acc_z [g]": frame["f3"] / GRAVITY, "acc_y [g]": frame["f2"] / GRAVITY,
+                 "acc_x [g]": frame["f1"] / GRAVITY}
+        pandas.DataFrame(names)[5:].to_parquet(folder / f"{stem}.parquet")
+
+    def telemetry(self, folder, stem, frame):
+        names = {"stamp": self.stamps(frame), "speed (rpm)": frame["omega"] * 30 / numpy.pi}
+        pandas.DataFrame(names).to_parquet(folder / f"{stem}_speed.parquet")
+
+
+class Matrix(Form):
+    """Matrices of NumPy, without names."""
+    def record(self, folder, stem, frame):
+        numpy.save(folder / f"{stem}.npy", frame.to_numpy())
+
+    def telemetry(self, folder, stem, frame):
+        numpy.save(folder / f"{stem}_speed.npy", frame.to_numpy())
+
+
 class Together(Form):
     """Readings and speed in one table, sampled together, temperature among them."""
     def record(self, folder, stem, frame):
@@ -198,14 +225,19 @@ class NoHeader(Form):
 
 
 class Tdms(Form):
-    """NI TDMS, written by npTDMS, time by the properties of the waveform or as a channel."""
+    """NI TDMS, written by npTDMS, time by the properties of the waveform, which brings other samples into a window."""
+    rounding = 0.5
+
     def record(self, folder, stem, frame):
         from nptdms import ChannelObject, TdmsWriter
+        step = frame["t"].iloc[1] - frame["t"].iloc[0]
+        waveform = {"wf_increment": step, "wf_start_offset": frame["t"].iloc[0]}
         with TdmsWriter(folder / f"{stem}.tdms") as writer:
-            writer.write_segment([ChannelObject("data", name, frame[name].to_numpy()) for name in frame.columns])
+            names = {"f1": "Acc X", "f2": "Acc Y", "f3": "Acc Z"}
+            writer.write_segment([ChannelObject("data", names[f], frame[f].to_numpy(), waveform) for f in names])
 
 
-FORMS = [Semicolons, Cyrillic, Utf16, LabView, Stamps, ThreeFiles, ThreeRecorders, Gs, Volts, Packed, Parquet, Together, NoHeader, Tdms]
+FORMS = [Semicolons, Cyrillic, Utf16, LabView, Stamps, ThreeFiles, ThreeRecorders, Gs, Volts, Packed, Parquet, ParquetOfPandas, Matrix, Together, NoHeader, Tdms]
 
 
 def run(*arguments, codes=(0,)):

@@ -22,7 +22,7 @@ pub use self::cells::{Cell, Kind, TypedColumn};
 pub use self::checksums::{CHECKSUMS, Checksums};
 pub(crate) use self::columnar::ColumnReader;
 pub use self::typed::TypedReader;
-use crate::column::Field;
+use crate::column::{ColumnName, Field};
 use crate::error::{Error, Place};
 use crate::source::Source;
 
@@ -63,6 +63,24 @@ impl BinaryFormat {
             (tdms::INDEX_MAGIC, BinaryFormat::TdmsIndex),
         ];
         MAGIC.into_iter().find(|(start, _)| magic.starts_with(start)).map(|(_, format)| format)
+    }
+
+    /// The columns of a source of this format: by name, of a matrix by number.
+    pub fn columns(self, source: &Source) -> Result<Vec<ColumnName>, Error> {
+        let named = |names: Vec<String>| names.into_iter().map(ColumnName::Name).collect();
+        Ok(match self {
+            Self::Parquet => named(parquet::names(source)?),
+            Self::Arrow => named(arrow::names(source)?),
+            Self::Npy => npy::names(source)?,
+            Self::Npz => npy::archive_names(source)?,
+            Self::Mat => mat::names(source)?,
+            Self::Tdms => named(tdms::names(source)?),
+            #[cfg(feature = "hdf5")]
+            Self::Hdf5 | Self::MatHdf5 => named(hdf5::names(source)?),
+            #[cfg(not(feature = "hdf5"))]
+            Self::Hdf5 | Self::MatHdf5 => Vec::new(),
+            Self::TdmsIndex => Vec::new(),
+        })
     }
 
     /// Reads `fields` of a source of this format, which can hold `most` rows.

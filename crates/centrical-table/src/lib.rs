@@ -59,11 +59,11 @@ pub use binary::{Cell, Kind, TypedColumn, TypedReader};
 pub use column::{ColumnName, Field, LARGEST_NUMBER, Rule, TableLines, UnitsFound, is_missing};
 pub use error::{Error, Place, quoted, shown_path};
 pub use foreign::{cut, escaped, harmless, harmless_line};
-pub use reader::{Extent, TableReader, estimate_rows, text_form};
+pub use reader::{Extent, TableReader, binary_columns, estimate_rows, text_form};
 pub use rows::{Rows, to_scale};
 pub use source::{Source, SourceReader};
 pub use stamp::{StampKind, Stamps};
-pub use text::{DecimalSign, Index, Reread, StampColumn, TextEncoding, TextForm, unit_of_word};
+pub use text::{DecimalSign, Index, Reread, StampColumn, TextEncoding, TextForm, unit_beside_name, unit_of_word};
 pub use write::{
     ClaimedFolder, Decimals, Outputs, TableFormat, TableWriter, TypedWriter, abandon_files, claim_folder,
     create_folder, csv_field, parquet_bytes, refuse_inputs, write_stream, write_table, write_whole,

@@ -11,7 +11,7 @@ use memchr::{memchr_iter, memrchr};
 #[cfg(feature = "xlsx")]
 use crate::binary::catch_panic;
 use crate::binary::{BinaryFormat, ColumnReader};
-use crate::column::{Field, TableLines, UnitsFound};
+use crate::column::{ColumnName, Field, TableLines, UnitsFound};
 use crate::error::{Error, Place};
 use crate::rows::{RowNumber, Rows};
 use crate::source::Source;
@@ -278,6 +278,20 @@ pub fn text_form(file: &Path) -> Result<Option<TextForm>, Error> {
         sample.truncate(memrchr(b'\n', &sample).map_or(0, |end| end + 1));
     }
     Ok(TextForm::of(sample.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&sample), encoding))
+}
+
+/// The columns of a table in a binary format: by name, those of a single matrix by number. Of text nothing.
+///
+/// # Errors
+/// If the file cannot be read, or is damaged.
+pub fn binary_columns(file: &Path) -> Result<Vec<ColumnName>, Error> {
+    const EXPECTED: &str = "a table of numbers";
+    let source = Source::open(file, EXPECTED)?;
+    let magic = first_bytes(&source).map_err(|e| Error::reading(file, e, EXPECTED))?;
+    match Format::of(&magic, &source) {
+        Format::Binary(format) => format.columns(&source),
+        _ => Ok(Vec::new()),
+    }
 }
 
 /// Whether a zip archive is a workbook.

@@ -32,7 +32,7 @@ use self::layout::Layout;
 pub(crate) use self::lines::{Lines, Packed, Plain};
 use self::piece::Piece;
 use self::prologue::Prologue;
-pub use self::unit_words::unit_of_word;
+pub use self::unit_words::{unit_beside_name, unit_of_word};
 use crate::column::{Field, TableLines, UnitsFound};
 use crate::error::{Error, Place};
 use crate::rows::{ASCENDING, Backwards, Before, RowNumber, Rows};

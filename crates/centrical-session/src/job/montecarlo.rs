@@ -26,13 +26,13 @@ pub struct MonteCarloRequest {
 }
 
 impl MonteCarloRequest {
-    /// A number of calibrations that can be repeated: ten million take an hour.
+    /// A number of calibrations: two at least, since one has no spread, and no more than can be repeated: ten million take an hour.
     ///
     /// # Errors
     /// What was found and expected.
     pub fn runs(runs: usize) -> Result<usize, String> {
-        let is_number = (1..=10_000_000).contains(&runs);
-        is_number.then_some(runs).ok_or_else(|| format!("found {runs}, expected 1 to 10,000,000 calibrations"))
+        let is_number = (2..=10_000_000).contains(&runs);
+        is_number.then_some(runs).ok_or_else(|| format!("found {runs}, expected 2 to 10,000,000 calibrations"))
     }
 }
 

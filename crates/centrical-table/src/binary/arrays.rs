@@ -93,6 +93,21 @@ pub(super) fn columns(source: &Source, arrays: &[Array], fields: &[Field]) -> Re
     fields.iter().map(|field| column(source, find(source.name(), arrays, field)?, field)).collect()
 }
 
+/// The columns of arrays as a field asks for them: by name, those of a single matrix by number.
+pub(super) fn names(arrays: &[Array]) -> Vec<ColumnName> {
+    let of_array = |array: &Array| -> Vec<ColumnName> {
+        match array.columns.as_slice() {
+            [column] if column.name.is_empty() && !array.name.is_empty() => vec![ColumnName::Name(array.name.clone())],
+            columns if columns.iter().all(|column| column.name.is_empty()) => match arrays {
+                [_] => (1..=columns.len()).map(ColumnName::Number).collect(),
+                _ => Vec::new(),
+            },
+            columns => columns.iter().map(|column| ColumnName::Name(column.name.clone())).collect(),
+        }
+    };
+    arrays.iter().flat_map(of_array).collect()
+}
+
 /// The array and the column in it that a field asks for.
 fn find<'a>(file: &Path, arrays: &'a [Array], field: &Field) -> Result<(&'a Array, &'a ArrayColumn), Error> {
     let wrong = |found: String, expected: &str| {

@@ -28,6 +28,23 @@ pub(super) fn parts(source: &Source, fields: &[Field]) -> Result<Parts, Error> {
     if messages.is_stream()? { Ok(of_stream(messages, fields)) } else { of_file(messages, fields) }
 }
 
+/// The names of the columns.
+pub(super) fn names(source: &Source) -> Result<Vec<String>, Error> {
+    let mut messages = Messages::new(source);
+    let failed = |e| damaged(source.name(), e);
+    if !messages.is_stream()? {
+        let footer = messages.footer()?;
+        let schema = FooterRef::read_as_root(&footer).and_then(|footer| footer.schema()).map_err(failed)?;
+        return schema::names(source.name(), schema.ok_or_else(|| contradiction(source.name()))?);
+    }
+    while let Some(message) = messages.next()? {
+        if let Some(MessageHeaderRef::Schema(schema)) = message.metadata()?.header().map_err(failed)? {
+            return schema::names(source.name(), schema);
+        }
+    }
+    Ok(Vec::new())
+}
+
 /// A stream: the schema first, then batches of rows; dictionaries are of columns that are not numbers.
 fn of_stream(mut messages: Messages, fields: Vec<Field>) -> Parts {
     let mut columns = None;

@@ -19,9 +19,19 @@ const LARGEST_NUMBER: u64 = 16;
 
 /// The columns of an HDF5 file that can hold `most` rows. MATLAB keeps its matrices there by columns.
 pub(super) fn columns(source: &Source, by_columns: bool, fields: &[Field], most: u64) -> Result<Vec<Column>, Error> {
-    let hdf = catch_panic(|| File::from_source(ReadSeekSource::new(source.reader_at(0)).map_err(HdfError::Format)?));
-    let hdf = hdf.map_err(|e| damaged(source.name(), Place::Whole, e.as_ref()))?;
+    let hdf = open(source)?;
     fields.iter().map(|field| column(source, &hdf, field, by_columns, most)).collect()
+}
+
+/// The names of the datasets.
+pub(super) fn names(source: &Source) -> Result<Vec<String>, Error> {
+    let hdf = open(source)?;
+    catch_panic(|| hdf.root().datasets()).map_err(|e| damaged(source.name(), Place::Whole, e.as_ref()))
+}
+
+fn open(source: &Source) -> Result<File, Error> {
+    let hdf = catch_panic(|| File::from_source(ReadSeekSource::new(source.reader_at(0)).map_err(HdfError::Format)?));
+    hdf.map_err(|e| damaged(source.name(), Place::Whole, e.as_ref()))
 }
 
 /// What the library complains of.

@@ -9,7 +9,7 @@ use std::io::{self, Read};
 use super::arrays;
 use super::arrays::{Array, ArrayColumn, Bytes, Packing, Scalar, ScalarKind};
 use super::columnar::Column;
-use crate::column::Field;
+use crate::column::{ColumnName, Field};
 use crate::error::{Error, Place};
 use crate::source::Source;
 
@@ -25,8 +25,17 @@ const MOST: u64 = 1 << 16;
 
 /// The columns of a MATLAB file.
 pub(super) fn columns(source: &Source, fields: &[Field]) -> Result<Vec<Column>, Error> {
+    arrays::columns(source, &matrices(source)?, fields)
+}
+
+/// Their names, or numbers.
+pub(super) fn names(source: &Source) -> Result<Vec<ColumnName>, Error> {
+    Ok(arrays::names(&matrices(source)?))
+}
+
+fn matrices(source: &Source) -> Result<Vec<Array>, Error> {
     let damaged = |e| Error::content(source.name(), Place::Whole, format!("damaged ({e})"), "a MATLAB file");
-    arrays::columns(source, &arrays(source).map_err(damaged)?, fields)
+    arrays(source).map_err(damaged)
 }
 
 /// The matrices of numbers in the file.

@@ -9,7 +9,7 @@ use super::arrays;
 use super::arrays::{Array, ArrayColumn, Bytes, Packing, Scalar, ScalarKind};
 use super::columnar::Column;
 use super::npy_literal::Literal;
-use crate::column::Field;
+use crate::column::{ColumnName, Field};
 use crate::error::{Error, Place, quoted};
 use crate::source::Source;
 
@@ -18,20 +18,34 @@ const LONGEST_HEADER: usize = 1 << 16;
 
 /// The columns of a `.npy` file.
 pub(super) fn columns(source: &Source, fields: &[Field]) -> Result<Vec<Column>, Error> {
-    let bytes = Bytes { packing: Packing::Plain, offset: 0, length: source.length(), skip: 0, crc_32: None };
-    match array(source, "", bytes)? {
-        Some(array) => arrays::columns(source, &[array], fields),
-        None => Err(Error::content(
-            source.name(),
-            Place::Whole,
-            "an array of another shape",
-            "a vector, a matrix or records",
-        )),
-    }
+    arrays::columns(source, &[only(source)?], fields)
+}
+
+/// Their names, or numbers.
+pub(super) fn names(source: &Source) -> Result<Vec<ColumnName>, Error> {
+    Ok(arrays::names(&[only(source)?]))
 }
 
 /// The columns of a `.npz` archive.
 pub(super) fn archive_columns(source: &Source, fields: &[Field]) -> Result<Vec<Column>, Error> {
+    arrays::columns(source, &members(source)?, fields)
+}
+
+/// Their names, or numbers.
+pub(super) fn archive_names(source: &Source) -> Result<Vec<ColumnName>, Error> {
+    Ok(arrays::names(&members(source)?))
+}
+
+/// The array of a `.npy` file.
+fn only(source: &Source) -> Result<Array, Error> {
+    let bytes = Bytes { packing: Packing::Plain, offset: 0, length: source.length(), skip: 0, crc_32: None };
+    array(source, "", bytes)?.ok_or_else(|| {
+        Error::content(source.name(), Place::Whole, "an array of another shape", "a vector, a matrix or records")
+    })
+}
+
+/// The arrays of a `.npz` archive.
+fn members(source: &Source) -> Result<Vec<Array>, Error> {
     let file = source.name();
     let damaged = |e: zip::result::ZipError| Error::content(file, Place::Whole, e.to_string(), "a .npz archive");
     let mut archive = zip::ZipArchive::new(source.reader_at(0)).map_err(damaged)?;
@@ -52,7 +66,7 @@ pub(super) fn archive_columns(source: &Source, fields: &[Field]) -> Result<Vec<C
         let (length, crc_32) = (member.compressed_size(), Some(member.crc32()));
         arrays.extend(array(source, name, Bytes { packing, offset, length, skip: 0, crc_32 })?);
     }
-    arrays::columns(source, &arrays, fields)
+    Ok(arrays)
 }
 
 /// The array that starts with a header at these bytes, if it has rows and columns.

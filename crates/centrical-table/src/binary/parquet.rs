@@ -25,8 +25,7 @@ use crate::stamp::{TickForm, TickUnit};
 /// The row groups of a file.
 pub(super) fn parts(source: &Source, fields: &[Field]) -> Result<Parts, Error> {
     let file = source.name();
-    let metadata = catch_panic(|| ParquetMetaDataReader::new().parse_and_finish(source));
-    let metadata = metadata.map_err(|e| damaged(file, e.as_ref()))?;
+    let metadata = metadata(source)?;
     let durations = durations(&metadata);
     let found = fields.iter().map(|field| find(file, &metadata, &durations, field));
     let columns: Vec<usize> = found.collect::<Result<_, Error>>()?;
@@ -43,6 +42,17 @@ pub(super) fn parts(source: &Source, fields: &[Field]) -> Result<Parts, Error> {
         let columns = columns.iter().map(open).collect::<ParquetResult<Vec<_>>>();
         columns.map_err(|e| damaged(&file, Some(&e)))
     })))
+}
+
+/// The names of the columns.
+pub(super) fn names(source: &Source) -> Result<Vec<String>, Error> {
+    let metadata = metadata(source)?;
+    Ok(metadata.file_metadata().schema_descr().columns().iter().map(|column| column.path().string()).collect())
+}
+
+fn metadata(source: &Source) -> Result<ParquetMetaData, Error> {
+    let metadata = catch_panic(|| ParquetMetaDataReader::new().parse_and_finish(source));
+    metadata.map_err(|e| damaged(source.name(), e.as_ref()))
 }
 
 /// Compressions of pages that are read.

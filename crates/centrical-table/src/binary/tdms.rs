@@ -69,6 +69,17 @@ pub(super) fn columns(source: &Source, fields: &[Field]) -> Result<Vec<Column>, 
     fields.iter().zip(&places).map(column).collect()
 }
 
+/// The names of the channels, with their group where several have one.
+pub(super) fn names(source: &Source) -> Result<Vec<String>, Error> {
+    let metadata = Metadata::read(source).map_err(|e| damaged(source.name(), Place::Whole, &e))?;
+    let channels = channels(&metadata);
+    let is_alone = |name: &str| channels.iter().filter(|channel| channel.name == name).count() == 1;
+    let name = |channel: &Channel| {
+        if is_alone(&channel.name) { channel.name.clone() } else { format!("{}/{}", channel.group, channel.name) }
+    };
+    Ok(channels.iter().map(name).collect())
+}
+
 /// All channels that have numbers.
 fn channels(metadata: &Metadata) -> Vec<Channel<'_>> {
     let mut numbers = BTreeSet::new();

@@ -44,6 +44,11 @@ pub fn unit_of_word(word: &str) -> Option<&'static str> {
     unit(word)
 }
 
+/// A name with the unit behind it, `f1 [g]`, `t (s)` or `f1, g`: the unit, in the spelling of settings.
+pub fn unit_beside_name(text: &str) -> Option<&'static str> {
+    name_and_unit(text).map(|(_, unit)| unit)
+}
+
 /// The unit that bytes of a file name in any encoding: a row of units is too short to show which it is.
 pub(super) fn unit_in_any(text: &[u8]) -> Option<&'static str> {
     let encodings = [TextEncoding::Utf8].into_iter().chain(TextEncoding::OF_BYTES);

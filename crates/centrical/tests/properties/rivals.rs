@@ -170,6 +170,27 @@ fn a_speed_typed_wrong_is_named() {
     }
 }
 
+/// A result does not rest on the absence of what the laboratory states: the budget includes it.
+#[test]
+fn what_is_stated_is_not_rested_on() {
+    let model = source_model();
+    let readings = session(&model, &truth(&model, 0.3, &mut Random::new(79)), &mut Random::new(80));
+    let rested_on = |model: &MeasurementModel| -> Vec<String> {
+        let data = Data::new(model, readings.clone()).unwrap();
+        let calibration = Calibration::exact(&data).unwrap();
+        let unseen = Rivals::of(&calibration, &unwatched).unwrap().rests_on(&unwatched).unwrap();
+        unseen.iter().map(|effect| effect.rival.name()).collect()
+    };
+    let (exact, stated) = (rested_on(&model), rested_on(&model.clone().with_stated(STATED)));
+    for name in ["gravity", "speed-scale", "proof-masses"] {
+        assert!(
+            exact.contains(&name.to_owned()) && !stated.contains(&name.to_owned()),
+            "{name}: {exact:?}, {stated:?}"
+        );
+    }
+    assert!(stated.contains(&"arm-turn-load".to_owned()), "{stated:?}");
+}
+
 /// What a result rests on is true: a session with an effect of the smallest size shown is objected to in 80 % of all cases, and the
 /// effect moves the parameter, left out, by what is said.
 #[test]

@@ -55,7 +55,8 @@ pub(super) enum What {
 pub(super) fn what(name: &str, unit: Option<&str>) -> What {
     let name = name.to_lowercase();
     let word: String = name.chars().take_while(|c| !"([,".contains(*c)).collect::<String>().trim().to_owned();
-    let is_number_of_row = unit.is_none() && ["no", "n", "№", "index", "sample"].contains(&word.as_str());
+    let numbers = ["no", "n", "№", "index", "sample"];
+    let is_number_of_row = unit.is_none() && (numbers.contains(&word.as_str()) || word.starts_with("__index_level"));
     if has(&word, &["temp", "темп", "status", "flag", "marker", "humid", "press"]) || is_number_of_row {
         return What::Other;
     }

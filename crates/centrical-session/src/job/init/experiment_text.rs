@@ -85,7 +85,7 @@ pub(super) fn draft(
 impl Findings {
     fn of(mountings: &[SeenMounting], tumbled: Option<&Tumbled>) -> Result<Self, Error> {
         let extremes: Vec<Option<Extremes>> = mountings.iter().map(SeenMounting::extremes).collect();
-        let mut unit = OutputUnit::of(mountings, &extremes);
+        let mut unit = OutputUnit::of(mountings, &extremes)?;
         if let Some(tumbled) = tumbled {
             unit.agree_with(tumbled, mountings)?;
         }

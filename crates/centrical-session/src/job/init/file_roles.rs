@@ -5,7 +5,9 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use centrical_table::{ColumnName, Extent, Field, Rule, TableReader, TextForm, text_form};
+use centrical_table::{
+    ColumnName, Extent, Field, Rule, TableReader, TextForm, binary_columns, text_form, unit_beside_name,
+};
 
 use super::column_names::{Label, What, sort_by_axis, what};
 use crate::error::Error;
@@ -35,6 +37,8 @@ pub(super) struct FileColumns {
     pub time: Option<Label>,
     pub readings: Vec<Label>,
     pub speed: Option<Label>,
+    /// Rates of turn about axes of the unit, until all columns are taken.
+    rates: Vec<Label>,
     /// Whether its readings are named as those of a gyroscope often are: `gx`, `gy`, `gz`.
     is_like_gyroscope: bool,
 }
@@ -86,6 +90,43 @@ pub(super) fn groups(inputs: &[PathBuf]) -> Result<(Vec<Group>, Vec<Unused>), Er
 }
 
 impl FileColumns {
+    /// Columns that have no names, in their usual order.
+    fn take_by_number(&mut self, count: usize) {
+        let numbered = Label::numbered;
+        match count {
+            2 => (self.time, self.speed) = (Some(numbered(0)), Some(numbered(1))),
+            3 => self.readings = (0..3).map(numbered).collect(),
+            4.. => (self.time, self.readings) = (Some(numbered(0)), (1..4).map(numbered).collect()),
+            _ => {}
+        }
+    }
+
+    fn take(&mut self, label: Label, holds: What) {
+        match holds {
+            What::Time if self.time.is_none() => self.time = Some(label),
+            What::Speed if self.speed.is_none() => self.speed = Some(label),
+            What::Rate => self.rates.push(label),
+            What::Reading => self.readings.push(label),
+            What::Time | What::Speed | What::Other => {}
+        }
+    }
+
+    /// With all columns taken: three readings, or one, or none.
+    fn settled(mut self) -> Self {
+        take_time(&mut self);
+        take_rates(&mut self);
+        if self.readings.len() != 3 && self.speed.is_some() {
+            // Telemetry with other columns beside the speed.
+            self.readings.clear();
+        }
+        self.readings.truncate(3);
+        if self.readings.len() == 2 {
+            self.readings.clear();
+        }
+        sort_by_axis(&mut self.readings);
+        self
+    }
+
     fn unused(self, reason: &str) -> Unused {
         Unused { path: self.path, reason: reason.to_owned() }
     }
@@ -116,60 +157,78 @@ fn collect(path: &Path, depth: usize, is_named: bool, paths: &mut Vec<PathBuf>) 
 
 /// The columns of a file; or why it is neither a record nor telemetry.
 fn columns_of(path: PathBuf) -> Result<Result<FileColumns, Unused>, Error> {
-    let Some(form) = text_form(&path)? else {
-        let reason = "found no table of text, expected columns t, f1, f2, f3 or t, omega of other tables";
-        return Ok(of_binary(&path).ok_or_else(|| Unused { path, reason: reason.to_owned() }));
+    let (file, names) = match text_form(&path)? {
+        Some(form) => {
+            let names = match form.names.join(", ") {
+                names if names.is_empty() => format!("{} columns without names", form.first_row.len()),
+                names => format!("columns {names}"),
+            };
+            (of_text(path, form), names)
+        }
+        None => match binary_columns(&path) {
+            Ok(columns) => {
+                let names = columns.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
+                (of_binary(path, &columns), format!("columns {names}"))
+            }
+            Err(error) => return Ok(Err(Unused { path, reason: error.to_string() })),
+        },
     };
-    let names = match form.names.join(", ") {
-        names if names.is_empty() => format!("{} columns without names", form.first_row.len()),
-        names => format!("columns {names}"),
-    };
-    let file = of_text(path, form);
     let is_used = file.speed.is_some() || !file.readings.is_empty();
     let expected = "a time and three readings, or a time and a speed such as \"speed (rpm)\"";
     Ok(if is_used { Ok(file) } else { Err(file.unused(&format!("found {names}, expected {expected}"))) })
 }
 
-/// Columns by their names and units; without a header by their number.
+/// Columns of a text by their names and units; without a header by their number.
 fn of_text(path: PathBuf, form: TextForm) -> FileColumns {
     let unit = |index: usize| form.units.get(index).copied().flatten();
     let mut file = FileColumns { path, ..FileColumns::default() };
-    let stamps = form.stamps.map(|stamps| stamps.column);
     if form.names.is_empty() {
-        let numbered = Label::numbered;
-        let count = form.first_row.len();
-        match count {
-            2 => (file.time, file.speed) = (Some(numbered(0)), Some(numbered(1))),
-            3 => file.readings = (0..3).map(numbered).collect(),
-            4.. => (file.time, file.readings) = (Some(numbered(0)), (1..4).map(numbered).collect()),
-            _ => {}
-        }
+        file.take_by_number(form.first_row.len());
     }
-    let mut rates = Vec::new();
+    let stamps = form.stamps.map(|stamps| stamps.column);
     for (index, name) in form.names.iter().enumerate() {
         let label = Label::of_text(name, unit(index));
-        match what(name, label.unit) {
-            _ if stamps == Some(index) && file.time.is_none() => file.time = Some(label),
-            What::Time if file.time.is_none() => file.time = Some(label),
-            What::Speed if file.speed.is_none() => file.speed = Some(label),
-            What::Rate => rates.push(label),
-            What::Reading => file.readings.push(label),
-            _ => {}
-        }
+        let holds = if stamps == Some(index) { What::Time } else { what(name, label.unit) };
+        file.take(label, holds);
     }
     file.form = Some(form);
-    take_time(&mut file);
-    take_rates(&mut file, rates);
-    if file.readings.len() != 3 && file.speed.is_some() {
-        // Telemetry with other columns beside the speed.
-        file.readings.clear();
+    file.settled()
+}
+
+/// Columns of another table by their names; those of a matrix by their number.
+fn of_binary(path: PathBuf, columns: &[ColumnName]) -> FileColumns {
+    const STAMPS: Rule = Rule::Ascending { stamps: true };
+    let mut file = FileColumns { path, ..FileColumns::default() };
+    let numbered = columns.iter().filter(|column| matches!(column, ColumnName::Number(_))).count();
+    file.take_by_number(numbered);
+    for column in columns {
+        let ColumnName::Name(name) = column else { continue };
+        let label = Label::of_text(name, unit_beside_name(name));
+        if opens(&file.path, &[(column, Rule::Any)]) {
+            let holds = what(name, label.unit);
+            file.take(label, holds);
+        } else if opens(&file.path, &[(column, STAMPS)]) {
+            file.take(label, What::Time);
+        }
     }
-    file.readings.truncate(3);
-    if file.readings.len() == 2 {
-        file.readings.clear();
+    // The time of a waveform is that of a reading, and asked for by any name.
+    let waveform = Label::usual("t");
+    if let (None, Some(reading)) = (&file.time, file.readings.first())
+        && opens(&file.path, &[(&reading.column, Rule::Any), (&waveform.column, STAMPS)])
+    {
+        file.time = Some(waveform);
     }
-    sort_by_axis(&mut file.readings);
-    file
+    file.settled()
+}
+
+/// Whether columns of a file hold what their rules ask for.
+fn opens(path: &Path, columns: &[(&ColumnName, Rule)]) -> bool {
+    let field = |(name, rule): &(&ColumnName, Rule)| Field {
+        name: (*name).clone(),
+        expected: "a number".to_owned(),
+        rule: *rule,
+    };
+    TableReader::open(path, Extent::Whole, &columns.iter().map(field).collect::<Vec<_>>(), "a table").is_ok()
 }
 
 /// A first column that rises from row to row, with others behind it, is the time by another name.
@@ -182,7 +241,8 @@ fn take_time(file: &mut FileColumns) {
 }
 
 /// Rates of turn: one is the speed if that is missing; three without a unit may be readings in g.
-fn take_rates(file: &mut FileColumns, rates: Vec<Label>) {
+fn take_rates(file: &mut FileColumns) {
+    let rates = std::mem::take(&mut file.rates);
     match rates.as_slice() {
         [rate] if file.speed.is_none() && file.readings.len() != 3 => file.speed = Some(rate.clone()),
         [_, _, _] if file.readings.is_empty() && file.speed.is_none() && rates.iter().all(|r| r.unit.is_none()) => {
@@ -203,25 +263,6 @@ fn rises(path: &Path, column: &ColumnName) -> bool {
     let Ok(Some([rows, ..])) = reader.next_batch() else { return false };
     let first = rows[0].len().min(1000);
     first >= ROWS && rows[0][..first].windows(2).all(|pair| pair[1] > pair[0])
-}
-
-/// A table that is not text is asked for the usual names.
-fn of_binary(path: &Path) -> Option<FileColumns> {
-    let label = Label::usual;
-    let has = |names: &[&str]| {
-        let field = |name: &&str| Field {
-            name: ColumnName::Name((*name).to_owned()),
-            expected: "a number".to_owned(),
-            rule: Rule::Any,
-        };
-        TableReader::open(path, Extent::Whole, &names.iter().map(field).collect::<Vec<_>>(), "a table").is_ok()
-    };
-    let none = FileColumns { path: path.to_owned(), time: Some(label("t")), ..FileColumns::default() };
-    if has(&["t", "f1", "f2", "f3"]) {
-        let speed = has(&["t", "omega"]).then(|| label("omega"));
-        return Some(FileColumns { readings: ["f1", "f2", "f3"].map(label).to_vec(), speed, ..none });
-    }
-    has(&["t", "omega"]).then(|| FileColumns { speed: Some(label("omega")), ..none })
 }
 
 /// Records by mounting: files of one newtonometer each, named alike but for the axis, belong together. Second, those that are

@@ -22,16 +22,35 @@ pub(super) enum OutputUnit {
     },
 }
 
+/// The unit that the files name.
+fn named(mountings: &[SeenMounting]) -> Result<Option<&'static str>, Error> {
+    let files = mountings.iter().flat_map(|m| &m.group.records);
+    let mut units = files.flat_map(|file| file.readings.iter().filter_map(move |label| Some((file, label.unit?))));
+    let Some((_, first)) = units.next() else { return Ok(None) };
+    match units.find(|(_, unit)| *unit != first) {
+        None => Ok(Some(first)),
+        Some((file, other)) => {
+            let found = format!("readings in {other} beside readings in {first}");
+            Err(Error::content(&file.path, Place::Whole, found, "one unit of all readings"))
+        }
+    }
+}
+
 impl OutputUnit {
     /// By the unit that the files name, else by the magnitude of the readings at rest.
-    pub fn of(mountings: &[SeenMounting], extremes: &[Option<Extremes>]) -> Self {
-        let mut labels = mountings.iter().flat_map(|m| &m.group.records).flat_map(|file| &file.readings);
-        match labels.find_map(|label| label.unit) {
-            Some("V") => return Self::Raw { name: "volts", unit: "V", coarse: Raw::by_gravity(extremes) },
-            Some("counts") => return Self::Raw { name: "counts", unit: "counts", coarse: Raw::by_gravity(extremes) },
-            Some(unit) => return Self::Named(unit),
-            None => {}
-        }
+    ///
+    /// # Errors
+    /// If the files name several.
+    pub fn of(mountings: &[SeenMounting], extremes: &[Option<Extremes>]) -> Result<Self, Error> {
+        Ok(match named(mountings)? {
+            Some("V") => Self::Raw { name: "volts", unit: "V", coarse: Raw::by_gravity(extremes) },
+            Some("counts") => Self::Raw { name: "counts", unit: "counts", coarse: Raw::by_gravity(extremes) },
+            Some(unit) => Self::Named(unit),
+            None => Self::by_gravity(extremes),
+        })
+    }
+
+    fn by_gravity(extremes: &[Option<Extremes>]) -> Self {
         let Some(seen) = extremes.iter().flatten().next() else { return Self::Unnamed };
         let norm = seen.rest.iter().map(|f| f * f).sum::<f64>().sqrt();
         let is_near = |unit: &&str| {

@@ -352,8 +352,12 @@ impl<'a> Following<'a> {
 
 /// Refuses a group that the model does not have, and one that stands twice.
 fn check_groups(wanted: &[String], session: &Session, model: &MeasurementModel) -> Result<(), Error> {
-    let mut groups: Vec<&str> = model.parameters().iter().map(|parameter| parameter.group.name()).collect();
-    groups.dedup();
+    let mut groups: Vec<&str> = Vec::new();
+    for parameter in model.parameters() {
+        if !groups.contains(&parameter.group.name()) {
+            groups.push(parameter.group.name());
+        }
+    }
     let twice = wanted.iter().enumerate().find(|(n, group)| wanted[..*n].contains(group));
     if let Some((_, twice)) = twice {
         return Err(Error::content(

@@ -33,6 +33,15 @@ struct Limits {
     count: usize,
 }
 
+/// The names of the columns.
+pub(super) fn names(file: &Path, schema: SchemaRef) -> Result<Vec<String>, Error> {
+    let fields = schema.fields().map_err(|e| damaged(file, e))?.into_iter().flatten();
+    fields
+        .map(|field| Ok(field?.name()?.unwrap_or_default().to_owned()))
+        .collect::<Flat<_>>()
+        .map_err(|e| damaged(file, e))
+}
+
 /// The columns that the fields ask for.
 pub(super) fn find(file: &Path, schema: SchemaRef, fields: &[Field]) -> Result<Vec<ArrowColumn>, Error> {
     let failed = |e| damaged(file, e);

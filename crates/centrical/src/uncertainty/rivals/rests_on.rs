@@ -8,7 +8,7 @@ use nalgebra::{DVector, Vector3};
 use super::catalogue::{Rivals, Suspect};
 use super::columns::Columns;
 use super::power::non_centrality;
-use crate::model::{FitError, Parameter, Rival};
+use crate::model::{FitError, Kind, Parameter, Rival};
 use crate::progress::{OnProgress, advance};
 use crate::uncertainty::verdict::Level;
 
@@ -59,7 +59,7 @@ impl Unseen {
 }
 
 impl Rivals<'_> {
-    /// What the result rests on, the worst first. `progress` is called for each rival.
+    /// What the result rests on, the worst first; effects with a stated uncertainty are left out. `progress` is called for each rival.
     ///
     /// # Errors
     /// [`FitError`] when numbers overflow or the caller stops.
@@ -75,7 +75,7 @@ impl Rivals<'_> {
         let needed = |suspect: &Suspect| needed.get(&suspect.seen.rank()).copied().flatten();
         let forces_z = self.forces();
         let mut list = Vec::new();
-        for suspect in &self.list {
+        for suspect in self.list.iter().filter(|suspect| !self.is_stated(suspect)) {
             advance(progress, ())?;
             if let Some((c, mut unseen)) = self.worst_of(suspect, needed(suspect), &forces_z)? {
                 unseen.shrink_to(self.smallest_shown(&suspect.columns.only(c), needed));
@@ -84,6 +84,15 @@ impl Rivals<'_> {
         }
         list.sort_by(|a, b| b.standard_uncertainties.total_cmp(&a.standard_uncertainties));
         Ok(list)
+    }
+
+    /// Whether the laboratory states an uncertainty of each unknown of a rival: the budget then includes it.
+    fn is_stated(&self, suspect: &Suspect) -> bool {
+        let influences = self.calibration.data().model().influences();
+        suspect
+            .unknowns
+            .iter()
+            .all(|unknown| influences.iter().any(|stated| Kind::Effect(stated.effect) == unknown.kind))
     }
 
     /// Smallest size of a single column that any rival shows: with what of it lies within a rival's columns, `s_r^T s_c`, the
