@@ -10,7 +10,6 @@ mod help;
 mod interruption;
 mod outcome;
 mod output;
-mod pattern;
 mod printing;
 mod progress;
 #[cfg(feature = "serve")]

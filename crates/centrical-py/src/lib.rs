@@ -27,6 +27,10 @@ use pyo3::pymodule;
 /// The native core of `centrical`.
 #[pymodule(gil_used = true)]
 pub mod _native {
+    /// Version of the package.
+    #[pymodule_export]
+    #[allow(non_upper_case_globals, reason = "Python's name")]
+    pub const __version__: &str = env!("CARGO_PKG_VERSION");
     #[pymodule_export]
     pub use crate::drawing::draw_curves;
     #[pymodule_export]

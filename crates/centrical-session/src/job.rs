@@ -11,6 +11,7 @@ mod models;
 mod montecarlo;
 mod noise;
 mod observe;
+mod pattern;
 mod plan;
 mod reduce;
 mod reduced_session;
@@ -29,7 +30,7 @@ pub use self::compensate::{Compensated, CompensationRequest, FirstOutside, compe
 pub use self::history::{
     Calibrated, CalibratedParameter, ChartLimits, ChartRequest, ComparedUnits, NoChart, ParameterLimits, Past, RuleSet,
     UnitHistoryRequest, UnitsHistoryRequest, by_unit, chart, expected_day, history_up_to, read_batches,
-    read_calibrations, read_limits, station_history, unit_history, unit_means, units_history,
+    read_calibrations, read_limits, several_units, station_history, unit_history, unit_means, units_history,
 };
 pub use self::history::{
     add_result, add_results, check_store, collect_results, list_store, refuse_date, spelling, today,
@@ -39,6 +40,7 @@ pub use self::models::select_model;
 pub use self::montecarlo::{MonteCarloCase, MonteCarloRequest};
 pub use self::noise::{NoiseRequest, noise_of, noise_of_plateau};
 pub use self::observe::{subject, subject_of};
+pub use self::pattern::expanded;
 pub use self::plan::{PlanRequest, USUAL_LEVELS, USUAL_TIMES, plan, read_plan, read_planning};
 pub use self::reduce::{Recorded, reduce, reduce_recorded, reduce_without_inputs};
 pub use self::reduced_session::write_reduced;

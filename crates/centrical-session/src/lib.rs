@@ -80,10 +80,10 @@ pub use job::{
     FirstOutside, InitRequest, LiveRequest, MonteCarloCase, MonteCarloRequest, NoiseRequest, PlanRequest, Recorded,
     SeriesRequest, SettingsForm, Tumble, TumbleRequest, USUAL_LEVELS, USUAL_TIMES, Watch, WatchEnd, WatchEvent,
     WatchProgress, WatchRequest, add_result, add_results, assess, calibrate, calibrate_reduced, calibrate_series,
-    calibrate_without, check_store, collect_results, compare_results, compensate, compensate_record, init, list_store,
-    noise_of, noise_of_plateau, plan, read_plan, read_planning, reduce, reduce_recorded, reduce_without_inputs,
-    refuse_date, select_model, settings_schema, simulate_session, spelling, subject, subject_of, time_column, today,
-    tumble, watch, write_reduced,
+    calibrate_without, check_store, collect_results, compare_results, compensate, compensate_record, expanded, init,
+    list_store, noise_of, noise_of_plateau, plan, read_plan, read_planning, reduce, reduce_recorded,
+    reduce_without_inputs, refuse_date, select_model, settings_schema, several_units, simulate_session, spelling,
+    subject, subject_of, time_column, today, tumble, watch, write_reduced,
 };
 pub use job::{
     Calibrated, CalibratedParameter, ChartLimits, ChartRequest, ComparedUnits, NoChart, ParameterLimits, Past, RuleSet,

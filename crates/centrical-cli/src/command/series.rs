@@ -5,12 +5,11 @@ use std::path::PathBuf;
 use std::sync::atomic::Ordering;
 
 use centrical_report::Screen;
-use centrical_session::{Error, FailedSession, Method, SeriesRequest, SeriesSummary, calibrate_series};
+use centrical_session::{Error, FailedSession, Method, SeriesRequest, SeriesSummary, calibrate_series, expanded};
 
 use crate::interruption::asked_to_end;
 use crate::outcome::Outcome;
 use crate::output::{print, remark};
-use crate::pattern::expanded;
 use crate::printing::Printing;
 use crate::progress;
 

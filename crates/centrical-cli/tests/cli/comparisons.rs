@@ -62,7 +62,16 @@ fn a_change_shows_beside_any_nominal_output() {
     fs::write(folder.path().join("volts.json"), other.to_string()).unwrap();
     let refused = centrical().args(["compare", files[0], "volts.json"]).current_dir(folder.path()).output().unwrap();
     let said = String::from_utf8_lossy(&refused.stderr).into_owned();
-    assert!(refused.status.code() == Some(2) && said.contains("found raw output in V, expected counts"), "{said}");
+    assert!(refused.status.code() == Some(2) && said.contains("found output in V, expected counts"), "{said}");
+    // Nor 1 m/s^2.
+    other.as_object_mut().unwrap().remove("output");
+    fs::write(folder.path().join("si.json"), other.to_string()).unwrap();
+    for command in [&["compare"][..], &["history", "unit"]] {
+        let pair = [files[0], "si.json"];
+        let refused = centrical().args(command).args(pair).current_dir(folder.path()).output().unwrap();
+        let said = String::from_utf8_lossy(&refused.stderr).into_owned();
+        assert!(refused.status.code() == Some(2) && said.contains("output in "), "{said}");
+    }
 }
 
 /// Gravity that both sessions of a station share cancels in the difference: a change of the scales by 40 ppm shows beside 100 ppm of gravity, in
@@ -96,4 +105,13 @@ fn what_both_share_cancels() {
         [&change["e_n"], &named(&history["parameters"], "G0_11")["e_n_previous"]].map(|e_n| e_n.as_f64().unwrap());
     assert!((by_compare / by_history - 1.0).abs() < 1e-9, "{by_compare} {by_history}");
     assert!(change["standard_uncertainty"].as_f64().unwrap() < 2e-5 && by_compare > 1.0, "{change}");
+    // Another gravity, stated for another place, is another error: 1e-4 of each place is in the difference of the scales.
+    changed["model"]["gravity"] = 9.79.into();
+    fs::write(folder.path().join("elsewhere.json"), changed.to_string()).unwrap();
+    let compared = json(folder.path(), &["compare", "first.json", "elsewhere.json", "--json"]);
+    let history = json(folder.path(), &["history", "unit", "first.json", "elsewhere.json", "--json"]);
+    let change = named(&compared["comparisons"][0]["differences"], "G0_11");
+    assert!(change["standard_uncertainty"].as_f64().unwrap() > 1.3e-4, "{change}");
+    let by_history = named(&history["parameters"], "G0_11")["e_n_previous"].as_f64().unwrap();
+    assert!((change["e_n"].as_f64().unwrap() / by_history - 1.0).abs() < 1e-9, "{change} {by_history}");
 }

@@ -203,6 +203,10 @@ fn known_attitudes_show_the_case() {
         assert_eq!(output.status.code(), Some(2), "{}", said(&output));
         said(&output).replace('\\', "/")
     };
+    // Half of the attitudes fit some rests by chance in any order of the columns; all fit in one.
+    let cyclic = ["tumble", &example("record.csv"), "--readings", "f2,f3,f1", "--gravity", "9.81523 m/s^2"];
+    let text = refused(&[&cyclic[..], &known].concat());
+    assert!(text.contains(" of 24 rests in one of these attitudes, and 24 of 24 with "), "{text}");
     // The rows are those of the rests.
     let table = folder.join("attitudes.csv");
     let rows = fs::read_to_string(&table).unwrap();
@@ -337,6 +341,10 @@ fn records_that_show_nothing_are_refused() {
     assert!(text.contains("found 2 columns, expected three"), "{text}");
     let text = refused(&[&record, "--readings", "f1,f2,f4"]);
     assert!(text.contains("f4"), "{text}");
+    for unit in ["furlong", "mV", ""] {
+        let text = refused(&[&record, "--unit", unit]);
+        assert!(text.contains("expected a unit of acceleration"), "{text}");
+    }
     let text = refused(&[&record, "--terms", "df_1,bananas"]);
     assert!(text.contains("bananas"), "{text}");
     fs::create_dir(copy.out().join("own")).unwrap();

@@ -53,6 +53,7 @@ if _typing.TYPE_CHECKING:
     from ._plot import Drawing
 
 set_threads = _native.set_threads
+__version__ = _native.__version__
 
 __all__ = [
     "ArraySession",

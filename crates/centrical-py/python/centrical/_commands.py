@@ -308,6 +308,8 @@ def series(
 ) -> Document:
     """Calibrates many sessions, one on each core, into a store in the folder ``out``, with a table of all.
 
+    A pattern such as ``"plant/*"`` stands for all paths that match it.
+
     A bad session becomes a row with its message. With ``reduced`` each session is kept reduced, some kB, in ``reduced/KEY`` by the
     key of its row: a later model is fitted to it without the records. Sessions that were done before, with the same files, are not calibrated again.
 

@@ -23,6 +23,11 @@ class Record(dict[str, Any]):
         except KeyError:
             raise AttributeError(f"found no {name!r}, expected one of {', '.join(self)}") from None
 
+    @property
+    def values(self) -> Any:  # type: ignore[override]
+        """What the document calls ``values``, where it does; the method of a ``dict`` otherwise."""
+        return self["values"] if "values" in self else super().values
+
     def __dir__(self) -> list[str]:
         return [*super().__dir__(), *self]
 

@@ -20,6 +20,7 @@ _Recorded = tuple[_Column, list[_Column], Union[list[_Column], None], Union[_Col
 __all__ = [
     "CalibrationResult",
     "Watcher",
+    "__version__",
     "assess",
     "calibrate",
     "add_failure",
@@ -50,6 +51,8 @@ __all__ = [
     "simulate",
     "tumble",
 ]
+
+__version__: str
 
 @final
 class CalibrationResult:

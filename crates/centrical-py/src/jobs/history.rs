@@ -8,7 +8,7 @@ use centrical_session::{
     Added, Calibrated, ChartLimits, ChartRequest, ComparedUnits, Date, Depth, Dimension, Error, Failure, OnProgress,
     ParameterLimits, Past, Place, Row, RuleSet, Selection, Store, UnitHistoryRequest, UnitsHistoryRequest, add_result,
     add_results, advance, by_unit, chart, check_store, expected_day, list_store, read_batches, read_calibrations,
-    read_limits, station_history, today, unit_history, units_history,
+    read_limits, several_units, station_history, today, unit_history, units_history,
 };
 use pyo3::exceptions::PyUserWarning;
 use pyo3::prelude::*;
@@ -133,7 +133,10 @@ pub fn history_unit(
         let units = by_unit(read(&results, &selection, &|done| work.advance(done))?);
         let is_meant = |unit: &str| serial.as_deref().is_none_or(|wanted| wanted == unit);
         let (own, others): (Vec<_>, Vec<_>) = units.into_iter().partition(|unit| is_meant(&unit[0].unit_serial));
-        let [own] = own.as_slice() else { return Err(missing(&results, "calibrations of one unit")) };
+        let [own] = own.as_slice() else {
+            let expected = "calibrations of one, by serial and model";
+            return Err(Error::content(&results[0], Place::Whole, several_units(&own), expected));
+        };
         let is_early = |on: Date| Some((on, expected_day(on, own)?));
         if let Some((on, expected)) = asked.and_then(is_early) {
             return Err(Error::content(&results[0], Place::Whole, format!("on = {on}"), expected));

@@ -60,7 +60,7 @@ pub fn tumble(
         time: column("time", time)?,
         rate: sampling_rate(rate)?,
         readings: [column("readings", first)?, column("readings", second)?, column("readings", third)?],
-        unit,
+        unit: TumbleRequest::unit(&unit).map_err(|wrong| refused("unit", wrong))?,
         gravity: gravity.unwrap_or(STANDARD_GRAVITY),
         gravity_uncertainty: uncertainty.unwrap_or(anywhere),
         attitudes: None,

@@ -27,6 +27,7 @@ impl CalibrationResult {
             date: self.session.date.clone(),
             day: days_since_1970(&self.session.date),
             station: self.session.station.clone(),
+            gravity: self.model.gravity,
             program: self.program.version.clone(),
             inputs: sha256(inputs.as_bytes()),
             reference: self.model.reference.name().to_owned(),

@@ -90,9 +90,6 @@ impl StatedAttitudes {
             (mistake, in_attitude(&up))
         };
         let as_they_are = in_attitude(&self.up_b);
-        if 2 * as_they_are > means.len() {
-            return None;
-        }
         let (mistake, count) = Mistake::of_columns().map(by_mistake).min_by_key(|(_, count)| Reverse(*count))?;
         let by_chance = self.up_b.len() as f64 * 0.5 * (1.0 - within.cos());
         let odds = (9.0 / by_chance).powf(count as f64 - as_they_are as f64) * ODDS;

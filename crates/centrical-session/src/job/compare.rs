@@ -6,7 +6,7 @@ use std::path::Path;
 use centrical::uncertainty::{Comparison, Estimates, compare};
 use nalgebra::{DMatrix, DVector};
 
-use super::history::{Calibrated, Kinds, other_output, shared_changes};
+use super::history::{Calibrated, Kinds, refuse_other_output, shared_changes};
 use crate::document::{CalibrationResult, ComparisonReport, PairComparison, TermSummary};
 use crate::error::{Error, Place};
 use crate::quantity::Date;
@@ -57,11 +57,10 @@ fn pair_of(
         let date = result.session.date.parse().unwrap_or(Date { year: 1970, month: 1, day: 1 });
         Calibrated::on(date, file.display().to_string(), result.row(&[]), &mut kinds)
     });
-    if let (Some(of_first), Some(of_second)) = (&a.output, &b.output) {
-        if of_first.unit != of_second.unit {
-            return Err(other_output(results[pair[1]].0, &of_second.unit, &of_first.unit, &a.source));
-        }
-        let output = of_second.clone();
+    if first.session.unit() == second.session.unit() {
+        refuse_other_output(&a, &b)?;
+    }
+    if let Some(output) = b.output.clone() {
         a.restate(&output);
     }
     // A coefficient of the same name may belong to another term.

@@ -26,7 +26,7 @@ pub use self::comparable::ComparedUnits;
 pub use self::earlier::history_up_to;
 pub use self::limits::{ParameterLimits, read_limits};
 pub use self::list::list_store;
-pub use self::read::{Past, by_unit, other_output, read_calibrations};
+pub use self::read::{Past, by_unit, read_calibrations, refuse_other_output, several_units};
 pub use self::results::collect_results;
 pub use self::station::station_history;
 pub use self::unit::{UnitHistoryRequest, expected_day, unit_history};

@@ -89,6 +89,8 @@ pub struct Row {
     pub day: Option<i64>,
     /// Name of the station, empty if none is stated.
     pub station: String,
+    /// Gravity at the place, as stated [m/s^2]; NaN in rows of older programs.
+    pub gravity: f64,
     /// Version of the program.
     pub program: String,
     /// SHA-256 over the paths and hashes of the inputs, hexadecimal.

@@ -63,6 +63,7 @@ pub(super) const ENTRIES: &[Entry] = &[
     Entry { column: TypedColumn { name: "date", kind: Kind::Text }, depth: Depth::Summary, get: |r| text(&r.date), set: |r, c| r.date = c.text() },
     Entry { column: TypedColumn { name: "day", kind: Kind::Integer }, depth: Depth::Summary, get: |r| r.day.map_or(Cell::Null, Cell::Integer), set: |r, c| r.day = c.integer() },
     Entry { column: TypedColumn { name: "station", kind: Kind::Text }, depth: Depth::Summary, get: |r| text(&r.station), set: |r, c| r.station = c.text() },
+    Entry { column: TypedColumn { name: "gravity", kind: Kind::Number }, depth: Depth::Summary, get: |r| Cell::Number(r.gravity), set: |r, c| r.gravity = c.number() },
     Entry { column: TypedColumn { name: "program", kind: Kind::Text }, depth: Depth::Summary, get: |r| text(&r.program), set: |r, c| r.program = c.text() },
     Entry { column: TypedColumn { name: "inputs", kind: Kind::Text }, depth: Depth::Summary, get: |r| text(&r.inputs), set: |r, c| r.inputs = c.text() },
     Entry { column: TypedColumn { name: "reference", kind: Kind::Text }, depth: Depth::Summary, get: |r| text(&r.reference), set: |r, c| r.reference = c.text() },

@@ -2,11 +2,10 @@
 
 use std::path::PathBuf;
 
-use centrical_session::{AddedReport, Error, add_results};
+use centrical_session::{AddedReport, Error, add_results, expanded};
 
 use crate::outcome::Outcome;
 use crate::output::print;
-use crate::pattern::expanded;
 use crate::progress;
 
 /// Add results to a store, which is made if it is not there. Results that it has are left as they are.

@@ -4,7 +4,8 @@ use std::path::PathBuf;
 
 use centrical_report::{unit_history_plots, unit_history_text, write_plots};
 use centrical_session::{
-    Calibrated, Date, Depth, Error, ParameterLimits, UnitHistoryRequest, by_unit, expected_day, unit_history,
+    Calibrated, Date, Depth, Error, ParameterLimits, UnitHistoryRequest, by_unit, expected_day, several_units,
+    unit_history,
 };
 
 use super::choice::Choice;
@@ -46,9 +47,6 @@ pub struct Arguments {
     printing: Printing,
 }
 
-/// Units that a message names.
-const SHOWN: usize = 8;
-
 /// Runs the command. Exit code 1 when a reading may be beyond its limit on the day that is asked for, or the last calibration has an objection.
 /// Scatter and drift are what a history measures, and no failure.
 pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
@@ -64,7 +62,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
         (by_unit(choice.read(Depth::Whole)?), Vec::new())
     };
     let [calibrations] = own.as_slice() else {
-        return Err(choice.refuse(several(&own), "calibrations of one, by --serial and --model"));
+        return Err(choice.refuse(several_units(&own), "calibrations of one, by --serial and --model"));
     };
     let same_model = |unit: &Vec<Calibrated>| unit.first().is_some_and(|c| c.unit_model == calibrations[0].unit_model);
     let others: Vec<_> = others.into_iter().filter(same_model).collect();
@@ -88,12 +86,4 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     }
     arguments.printing.show(|| unit_history_text(&report), || report.to_json())?;
     Ok(Outcome::acceptable(report.is_acceptable()))
-}
-
-/// Units by model and serial number: either may be empty, and distinguish two units.
-fn several(units: &[Vec<Calibrated>]) -> String {
-    let named = |unit: &Vec<Calibrated>| format!("model {:?} serial {:?}", unit[0].unit_model, unit[0].unit_serial);
-    let listed = units.iter().take(SHOWN).map(named).collect::<Vec<_>>().join(", ");
-    let more = if units.len() > SHOWN { format!(" and {} more", units.len() - SHOWN) } else { String::new() };
-    format!("{} units: {listed}{more}", units.len())
 }

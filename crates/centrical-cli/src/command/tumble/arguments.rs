@@ -28,7 +28,7 @@ pub struct Arguments {
     #[arg(long, value_name = "COLUMNS", value_parser = three_columns)]
     readings: Option<Columns>,
     /// Unit of the readings: of acceleration, or "counts" or "V", whose scale and bias are found [default: m/s^2]
-    #[arg(long)]
+    #[arg(long, value_parser = TumbleRequest::unit)]
     unit: Option<String>,
     /// Gravity at the place, such as "9.81523 m/s^2" [default: 9.80665 m/s^2, uncertain by 0.02 m/s^2]
     #[arg(long, value_name = "QUANTITY", value_parser = gravity)]

@@ -45,7 +45,10 @@ class Summary:
             lines += [f"OUTLYING  unit {unit.unit_serial}, by {', '.join(unit.most)}" for unit in self.units.outlying[:SHOWN]]
             found = self.units.findings[:SHOWN]
             lines += [f"{finding.kind.upper()}  unit {finding.unit_serial}: {finding.parameter}" for finding in found]
-            if not self.units.outlying and not found:
+            for station in self.units.content.get("untested", []):
+                where = f" at {station.station}" if station.station else ""
+                lines.append(f"NOT TESTED  {len(station.units)} units{where}: ten are needed to say which is outlying")
+            if self.units.is_tested and not self.units.outlying and not found:
                 lines.append("no unit is outlying, drifts or scatters more than the others")
         lines.append(f"{self.seconds:.0f} s of calibration")
         return "\n".join(lines)

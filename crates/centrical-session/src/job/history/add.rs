@@ -75,6 +75,7 @@ pub fn refuse_date(file: &Path, date: &str) -> Result<(), Error> {
 /// # Errors
 /// As [`Store::add`].
 pub fn add_result(folder: &Path, result: &CalibrationResult, rows_only: bool) -> Result<Added, Error> {
+    refuse_date(Path::new("result"), &result.session.date)?;
     let text = result.to_json()?;
     let row = result.row(text.as_bytes());
     Store::create(folder)?.add_with_results(vec![(row, (!rows_only).then(|| text.into_bytes()))], &unwatched)

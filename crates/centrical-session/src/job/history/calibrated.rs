@@ -3,8 +3,8 @@
 mod errors;
 mod kinds;
 mod output;
+mod shared_errors;
 
-use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use centrical::history::{Point, Series, SessionEstimates};
@@ -16,7 +16,8 @@ use self::kinds::Role;
 pub use self::kinds::{CalibratedParameter, Kinds, Places};
 pub use self::output::Output;
 use self::output::{Restated, in_changes, in_covariance, in_values};
-use super::of_data::{OfData, PRIORS};
+use self::shared_errors::SharedErrors;
+use super::of_data::OfData;
 use crate::document::{PastSession, TermSummary};
 use crate::quantity::Date;
 use crate::store::{Row, SharedInfluence};
@@ -32,6 +33,8 @@ pub struct Calibrated {
     pub unit_serial: String,
     /// The centrifuge, as its sessions call it; empty where they do not.
     pub station: String,
+    /// Gravity at the place, as stated [m/s^2]; NaN where it is not known.
+    gravity: f64,
     /// Day of the session.
     pub date: Date,
     /// The same as its session states it, with the time if there is one.
@@ -117,6 +120,7 @@ impl Calibrated {
             unit_model: row.unit_model,
             unit_serial: row.unit_serial,
             station: row.station,
+            gravity: row.gravity,
             values: row.values,
             standard_uncertainties: row.standard_uncertainties,
             covariance: row.covariance,
@@ -343,34 +347,18 @@ pub fn series(calibrations: &[&Calibrated], combination: &[(String, f64)], zero:
         let places: Vec<(usize, f64)> = combination.iter().map(at).collect::<Option<_>>()?;
         let seen = calibrated.seen(basis);
         let (value, variance, shared) = seen.combined(&places);
-        changes.push(errors.of(&calibrated.station, seen.shared).into_iter().zip(shared).collect::<Vec<_>>());
+        changes.push(
+            errors.of(&calibrated.station, calibrated.gravity, seen.shared).into_iter().zip(shared).collect::<Vec<_>>(),
+        );
         points.push(Point { time: years(zero, calibrated.date), value, variance });
     }
-    let mut shared = DMatrix::zeros(points.len(), errors.0.len());
+    let mut shared = DMatrix::zeros(points.len(), errors.count());
     for (n, row) in changes.iter().enumerate() {
         for &(column, change) in row {
             shared[(n, column)] = change;
         }
     }
     Series::new(&points, &shared)
-}
-
-/// The independent errors that sessions share, numbered: those of one station, source and number within the source.
-#[derive(Default)]
-struct SharedErrors<'a>(BTreeMap<(&'a str, &'a str, usize), usize>);
-
-impl<'a> SharedErrors<'a> {
-    /// The number of each error of a session at `station`.
-    fn of(&mut self, station: &'a str, shared: &'a [SharedInfluence]) -> Vec<usize> {
-        let mut numbers: BTreeMap<&str, usize> = BTreeMap::new();
-        let number = |SharedInfluence { source, .. }: &'a SharedInfluence| {
-            let number = numbers.entry(source).or_default();
-            *number += 1;
-            let next = self.0.len();
-            *self.0.entry((if source == PRIORS { "" } else { station }, source, *number)).or_insert(next)
-        };
-        shared.iter().map(number).collect()
-    }
 }
 
 /// Changes of `names` in each of `calibrations` by the errors that sessions share, a column for each error; of those alone that as many
@@ -382,9 +370,9 @@ pub fn shared_changes(
 ) -> Vec<DMatrix<f64>> {
     let mut errors = SharedErrors::default();
     let numbers: Vec<Vec<usize>> =
-        calibrations.iter().map(|c| errors.of(&c.station, c.seen(Basis::Data).shared)).collect();
+        calibrations.iter().map(|c| errors.of(&c.station, c.gravity, c.seen(Basis::Data).shared)).collect();
     let count = |error: usize| numbers.iter().filter(|of| of.contains(&error)).count();
-    let columns: Vec<usize> = (0..errors.0.len()).filter(|&error| wanted(count(error))).collect();
+    let columns: Vec<usize> = (0..errors.count()).filter(|&error| wanted(count(error))).collect();
     let changes = |(calibrated, numbers): (&&Calibrated, &Vec<usize>)| {
         let shared = calibrated.seen(Basis::Data).shared;
         DMatrix::from_fn(names.len(), columns.len(), |i, column| {

@@ -46,22 +46,24 @@ pub fn read_calibrations(paths: &[PathBuf], selection: &Selection, progress: OnP
     Ok(Past { calibrations, undated })
 }
 
-/// Refuses calibrations of one unit in counts and in volts: nothing says how many counts a volt is.
+/// Refuses calibrations of one unit in counts and in volts, or in m/s^2: nothing says how many counts a volt or 1 m/s^2 is.
 fn refuse_other_outputs(calibrations: &[Calibrated]) -> Result<(), Error> {
-    let mut outputs: BTreeMap<(&str, &str), (&str, &str)> = BTreeMap::new();
+    let mut first: BTreeMap<(&str, &str), &Calibrated> = BTreeMap::new();
     for calibrated in calibrations {
-        let Some(output) = &calibrated.output else { continue };
-        let (unit, source) = *outputs.entry(calibrated.unit()).or_insert((&output.unit, &calibrated.source));
-        if unit != output.unit {
-            return Err(other_output(Path::new(&calibrated.source), &output.unit, unit, source));
-        }
+        refuse_other_output(first.entry(calibrated.unit()).or_insert(calibrated), calibrated)?;
     }
     Ok(())
 }
 
-/// The error of a calibration whose raw output is in another unit than that of another file.
-pub fn other_output(file: &Path, found: &str, expected: &str, of: &str) -> Error {
-    Error::content(file, Place::Whole, format!("raw output in {found}"), format!("{expected}, as in {of}"))
+/// Refuses a calibration whose output is in another unit than that of the first.
+pub fn refuse_other_output(first: &Calibrated, calibrated: &Calibrated) -> Result<(), Error> {
+    let unit = |of: &Calibrated| of.output.as_ref().map_or_else(|| "m/s^2".to_owned(), |output| output.unit.clone());
+    let (expected, found) = (unit(first), unit(calibrated));
+    if found == expected {
+        return Ok(());
+    }
+    let (file, found) = (Path::new(&calibrated.source), format!("output in {found}"));
+    Err(Error::content(file, Place::Whole, found, format!("{expected}, as in {}", first.source)))
 }
 
 /// States all calibrations relative to the nominal output of the last one in the same raw unit.
@@ -73,6 +75,17 @@ fn restate(calibrations: &mut [Calibrated]) {
             calibrated.restate(last);
         }
     }
+}
+
+/// Units of a list.
+const SHOWN: usize = 8;
+
+/// How many units there are, and which, in words: by model and serial number, either of which may be empty.
+pub fn several_units(units: &[Vec<Calibrated>]) -> String {
+    let named = |unit: &Vec<Calibrated>| format!("model {:?} serial {:?}", unit[0].unit_model, unit[0].unit_serial);
+    let listed = units.iter().take(SHOWN).map(named).collect::<Vec<_>>().join(", ");
+    let more = if units.len() > SHOWN { format!(" and {} more", units.len() - SHOWN) } else { String::new() };
+    format!("{} units: {listed}{more}", units.len())
 }
 
 /// The calibrations unit by unit, each in the order of time.

@@ -2,9 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-use centrical_table::ColumnName;
+use centrical_table::{ColumnName, unit_of_word};
 
-use crate::experiment::{Folder, StatedAttitudes};
+use crate::experiment::{Folder, RAW_OUTPUT, StatedAttitudes};
+use crate::quantity::Dimension;
 
 /// Records of a unit that rested in attitudes that only gravity shows, and what is to be made of them.
 #[derive(Debug, Clone, PartialEq)]
@@ -19,7 +20,7 @@ pub struct TumbleRequest {
     pub rate: Option<f64>,
     /// Columns of newtonometers 1, 2, 3.
     pub readings: [ColumnName; 3],
-    /// Unit of the readings: one of acceleration, `V`, or any other for counts.
+    /// Unit of the readings: one of acceleration, `V` or `counts`.
     pub unit: String,
     /// Gravity at the place [m/s^2].
     pub gravity: f64,
@@ -43,6 +44,21 @@ impl TumbleRequest {
     /// Bias, scale and misalignment: what a unit shows at 1 g.
     pub const USUAL_TERMS: [&'static str; 9] =
         ["df_1", "df_2", "df_3", "G0_11", "G0_21", "G0_22", "G0_31", "G0_32", "G0_33"];
+
+    /// The unit of readings: one of acceleration, `V` or `counts`, in the spelling of settings.
+    ///
+    /// # Errors
+    /// What was found and expected.
+    pub fn unit(text: &str) -> Result<String, String> {
+        let unit = unit_of_word(text).unwrap_or(text);
+        let is_raw = RAW_OUTPUT.iter().any(|(_, raw, _)| *raw == unit);
+        if is_raw || Dimension::Acceleration.factor(unit).is_some() {
+            return Ok(unit.to_owned());
+        }
+        Err(format!(
+            "found {text:?}, expected a unit of acceleration such as \"m/s^2\" or \"g\", or \"counts\" or \"V\""
+        ))
+    }
 
     /// All files that are read: the records, and that of the attitudes.
     pub fn inputs(&self) -> impl Iterator<Item = &Path> {

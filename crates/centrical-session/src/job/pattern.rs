@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use centrical_session::{Error, Place};
+use crate::error::{Error, Place};
 
 /// The paths as given. One that is not there and has `*`, `?` or `[` stands for all that match it, in the order of their names.
 ///
