@@ -20,7 +20,8 @@ pub use self::content::{
     Align, Attachment, Block, Column, Document, Fact, Layer, Margins, Opening, Picture, Row, Section, Table, TableKind,
     Tone,
 };
+pub(crate) use self::drift::drift_facts;
 pub(crate) use self::objection::{objection, rival};
 pub use self::report::report;
-pub(crate) use self::rests_on::{counts_as_exact, presupposed, rests_on_sentence};
+pub(crate) use self::rests_on::{counts_as_exact, presuppositions, rests_on_sentence};
 pub(crate) use self::switch_on::switch_on_sentence;

@@ -76,8 +76,8 @@ pub use self::result::{
 pub use self::series::{FailedSession, SeriesSummary};
 pub use self::simulation::SimulationReport;
 pub use self::steadiness::{
-    CreepSummary, DriftSummary, LeftOutSummary, PlateauDriftVerdict, RepeatedPlateau, SessionDriftVerdict,
-    SessionTrend, TiltSummary, TiltVerdict,
+    CreepSummary, DisturbedPlateau, DriftSummary, LeftOutSummary, PlateauDriftVerdict, RepeatedPlateau,
+    SessionDriftVerdict, SessionTrend, TiltSummary, TiltVerdict,
 };
 pub(crate) use self::truth::{Written, WrittenSession, WrittenTumble, truth_json};
 pub use self::watch::{

@@ -235,6 +235,24 @@ fn a_unit_outside_its_limits() {
     let run = copy.calibrate(&["--laboratory", tight.to_str().unwrap()]);
     let said = String::from_utf8_lossy(&run.stdout).into_owned();
     assert!(run.status.code() == Some(1) && said.contains("ACCEPTABLE  no check") && said.contains(line), "{said}");
+    // A value within its limits by less than U is not accepted, and not called outside.
+    let text = fs::read_to_string(&tight).unwrap();
+    let guarded = "[[decision.limit]]\nparameter = \"df_1\"\nwithin = \"3.954 mg\"\n";
+    let text = format!("{}{guarded}", &text[..text.find("[[decision.limit]]").unwrap()]);
+    fs::write(copy.out().join("guarded.toml"), text).unwrap();
+    let arguments = ["--html", "g.html", "--dcc", "g.xml", "--laboratory", "guarded.toml"];
+    let run = copy.run(&[&["report", "result.json"], &arguments[..]].concat());
+    let said = String::from_utf8_lossy(&run.stdout).into_owned();
+    let line =
+        "UNIT WITHIN ITS LIMITS BY LESS THAN U, NOT ACCEPTED  df₁: −3.9524 ± 0.0040 mg; limits −3.954 … 3.954 mg";
+    assert!(run.status.code() == Some(1) && said.contains(line), "{said}");
+    assert!(fs::read_to_string(copy.out().join("g.html")).unwrap().contains("Unit not shown to be within its limits"));
+    let digital = fs::read_to_string(copy.out().join("g.xml")).unwrap();
+    for words in
+        ["noPass</dcc:conformity>", "with a probability of less than 80 %", "No adjustment or repair of the unit"]
+    {
+        assert!(digital.contains(words), "{words}");
+    }
     // A quantity of another dimension is refused by place.
     let wrong = fs::read_to_string(&tight).unwrap().replace("3.0343 mg", "3 urad");
     fs::write(&tight, wrong).unwrap();

@@ -3,7 +3,7 @@
 use centrical_session::{Address, CalibrationResult, Contact, Laboratory};
 
 use super::xml::Xml;
-use crate::document::{Issuer, counts_as_exact, objection, presupposed, rule, switch_on_sentence};
+use crate::document::{Issuer, counts_as_exact, drift_facts, objection, presuppositions, rule, switch_on_sentence};
 use crate::evaluation::UnitVerdict;
 use crate::language::Language;
 
@@ -141,17 +141,23 @@ fn statements(xml: &mut Xml, result: &CalibrationResult, issuer: &Issuer, langua
                 match unit.verdict() {
                     UnitVerdict::Within => xml.leaf("dcc:conformity", "pass"),
                     UnitVerdict::Outside => xml.leaf("dcc:conformity", "fail"),
+                    UnitVerdict::InGuardBand => xml.leaf("dcc:conformity", "noPass"),
                     UnitVerdict::NotStated => {}
                 }
             });
         }
         for (name, text) in [
             (messages.counts_as_exact.to_owned(), counts_as_exact(result, language)),
-            (presupposed(result, language), String::new()),
+            (presuppositions(result, language), String::new()),
         ] {
             let text = if text.is_empty() { name } else { format!("{name}: {text}") };
             statement(xml, "7.8.4.1 a", &text);
         }
+        for (name, text) in drift_facts(result, language) {
+            statement(xml, "7.8.2.1 m", &format!("{name}: {text}"));
+        }
+        let adjustment = issuer.laboratory.item.adjustment.as_deref();
+        statement(xml, "7.8.4.1 d", adjustment.unwrap_or(messages.no_adjustment));
         if let Some(text) = issuer.past.as_ref().and_then(|past| switch_on_sentence(past, language)) {
             statement(xml, "7.8.4.1 a", &text);
         }

@@ -11,15 +11,12 @@ use super::content::{Align, Block, Document, Margins, Opening, Picture, Row, Sec
 use super::drift::drift;
 use super::objection::objection;
 use super::reading_error::{error_note, error_table};
-use super::rests_on::{self, counts_as_exact, rests_on_sentence};
+use super::rests_on::{counts_as_exact, presuppositions};
 use super::switch_on::switch_on;
 use super::symbols::nominal_output;
 use super::tables::{cells, of_arm};
 use crate::evaluation::{UnitStatement, by_group, equations, expanded, symbol};
 use crate::language::Language;
-
-/// Effects that a certificate names: more than these tell a reader no more.
-const PRESUPPOSED: usize = 3;
 
 /// Who issues a certificate, and what they say of the unit.
 #[derive(Debug, Clone, PartialEq)]
@@ -257,7 +254,7 @@ fn results(result: &CalibrationResult, language: Language) -> Vec<Block> {
     blocks.push(Block::Table(table));
     blocks.push(Block::paragraph(messages.uncertainty_statement));
     blocks.push(Block::facts([(messages.counts_as_exact, counts_as_exact(result, language))]));
-    blocks.push(Block::paragraph(&presupposed(result, language)));
+    blocks.push(Block::paragraph(&presuppositions(result, language)));
     blocks.extend(nominal_output(result, language));
     blocks.push(Block::paragraph(messages.covariance_note));
     blocks
@@ -285,19 +282,6 @@ fn adjustment(
         blocks.push(Block::paragraph(error_note(result, language)));
     }
     blocks
-}
-
-/// What the stated uncertainties presuppose, in a sentence for each of the worst effects.
-fn presupposed(result: &CalibrationResult, language: Language) -> String {
-    let messages = language.messages();
-    let worst: Vec<String> =
-        result.rests_on.iter().take(PRESUPPOSED).map(|effect| rests_on_sentence(effect, language)).collect();
-    let effects = if worst.is_empty() {
-        String::new()
-    } else {
-        format!(" {}: {}.", messages.rests_on_sentence, worst.join("; "))
-    };
-    format!("{}{effects}", rests_on::presupposed(result, language))
 }
 
 /// The day of the calibration before an adjustment, and the objections to it.

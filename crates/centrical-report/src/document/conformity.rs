@@ -21,6 +21,7 @@ pub(super) fn conformity_table(unit: &UnitStatement, language: Language) -> Tabl
     let row = |judged: &Judged| {
         let verdict = match judged.conforms {
             Some(true) => messages.conforms,
+            Some(false) if judged.is_in_guard_band => messages.in_guard_band,
             Some(false) => messages.does_not_conform,
             None => messages.conformity_not_stated,
         };

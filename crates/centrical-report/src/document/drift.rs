@@ -1,17 +1,14 @@
 //! What the documents say of drift and tilt.
 
 use centrical_session::{
-    CalibrationResult, DriftSummary, LeftOutSummary, MICRO_G, PlateauDriftVerdict, SessionDriftVerdict, TiltSummary,
-    TiltVerdict,
+    CalibrationResult, DisturbedPlateau, DriftSummary, LeftOutSummary, MICRO_G, PlateauDriftVerdict,
+    SessionDriftVerdict, TiltSummary, TiltVerdict,
 };
 
 use super::content::Block;
 use crate::evaluation::{has_rounded_times, interpolated, newtonometer, not_used, unscheduled};
 use crate::language::{Language, Messages};
 use crate::number::MINUTE;
-
-/// A name and what it stands for.
-type Fact = (&'static str, String);
 
 /// Drift, tilt and samples left out under their heading, with a `note` of what they are; nothing for a session that came already averaged.
 /// `lines` is the room that the heading needs.
@@ -30,7 +27,7 @@ pub(super) fn drift(
 }
 
 /// A name and a text each.
-fn drift_facts(result: &CalibrationResult, language: Language) -> Vec<Fact> {
+pub(crate) fn drift_facts(result: &CalibrationResult, language: Language) -> Vec<(&'static str, String)> {
     let mut facts = Vec::new();
     if let Some(drift) = &result.drift {
         drifts(&mut facts, drift, language);
@@ -50,7 +47,7 @@ fn steadiness_note(result: &CalibrationResult, messages: &Messages) -> String {
     [messages.steadiness_note].into_iter().chain(tilt).collect::<Vec<_>>().join(" ")
 }
 
-fn drifts(facts: &mut Vec<Fact>, drift: &DriftSummary, language: Language) {
+fn drifts(facts: &mut Vec<(&'static str, String)>, drift: &DriftSummary, language: Language) {
     let messages = language.messages();
     let per_minute = MINUTE / MICRO_G;
     let slopes = drift.slope.iter().zip(&drift.slope_uncertainty).enumerate();
@@ -91,7 +88,7 @@ fn drifts(facts: &mut Vec<Fact>, drift: &DriftSummary, language: Language) {
     }
 }
 
-fn tilts(facts: &mut Vec<Fact>, tilt: &TiltSummary, language: Language) {
+fn tilts(facts: &mut Vec<(&'static str, String)>, tilt: &TiltSummary, language: Language) {
     let messages = language.messages();
     let shown = |value: f64, u: f64| format!("{} {}", language.plus_minus(1e6 * value, 1e6 * u), language.unit("urad"));
     facts.push((messages.tilt_at_rest, shown(tilt.at_rest, tilt.at_rest_uncertainty)));
@@ -107,6 +104,10 @@ fn tilts(facts: &mut Vec<Fact>, tilt: &TiltSummary, language: Language) {
             }
         },
     ];
+    for DisturbedPlateau { mounting, index, tilt } in &tilt.disturbed {
+        let size = format!("{} {}", language.significant(1e6 * tilt, 2), language.unit("urad"));
+        said.push(format!("{} {mounting}:{}: {size}", messages.tilt_disturbed, index + 1));
+    }
     if tilt.scatters() {
         let (chi_squared, nu) = (language.fixed(tilt.scatter_chi_squared, 1), tilt.plateaus.saturating_sub(1));
         said.push(format!("{}: χ² = {chi_squared}; ν = {nu}", messages.tilts_scatter));
@@ -114,7 +115,7 @@ fn tilts(facts: &mut Vec<Fact>, tilt: &TiltSummary, language: Language) {
     facts.push((messages.tilt_spinning, said.join("; ")));
 }
 
-fn left_out(facts: &mut Vec<Fact>, result: &CalibrationResult, language: Language) {
+fn left_out(facts: &mut Vec<(&'static str, String)>, result: &CalibrationResult, language: Language) {
     let messages = language.messages();
     let LeftOutSummary { spikes, stuck, missing, repeated } = not_used(result);
     let kinds = [

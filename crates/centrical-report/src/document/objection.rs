@@ -7,7 +7,10 @@ use centrical_session::{Follows, MICRO_G, PatternSummary, ResultObjection, Rival
 use crate::language::Language;
 
 /// Rivals that a sentence names beside the first.
-const ALIKE: usize = 3;
+const ALIKE: usize = 5;
+
+/// Patterns that a sentence names: one cause makes many.
+const PATTERNS: usize = 3;
 
 /// An objection to a result.
 pub(crate) fn objection(objection: &ResultObjection, language: Language) -> String {
@@ -25,8 +28,12 @@ pub(crate) fn objection(objection: &ResultObjection, language: Language) -> Stri
             format!("{}: {}, {} {chance}", messages.outlying_plateaus, plateaus.join(", "), messages.chance)
         }
         Objection::Patterns(patterns) => {
-            let found: Vec<String> = patterns.iter().map(|found| pattern(found, language)).collect();
-            format!("{}: {}", messages.patterns_found, found.join("; "))
+            let found: Vec<String> = patterns.iter().take(PATTERNS).map(|found| pattern(found, language)).collect();
+            let further = match patterns.len().saturating_sub(PATTERNS) {
+                0 => String::new(),
+                further => format!("; {} {further}", messages.further_patterns),
+            };
+            format!("{}: {}{further}", messages.patterns_found, found.join("; "))
         }
         Objection::Speeds(findings) => {
             let said: Vec<String> = findings.iter().map(messages.words.speed_finding).collect();

@@ -121,6 +121,7 @@ fn of_unit(unit: Option<&UnitStatement>, language: Language) -> Section {
     let (tone, heading, text) = match unit.verdict() {
         UnitVerdict::Within => (Tone::Good, messages.unit_within, messages.unit_within_text),
         UnitVerdict::Outside => (Tone::Bad, messages.unit_outside, messages.unit_outside_text),
+        UnitVerdict::InGuardBand => (Tone::Bad, messages.unit_in_guard_band, messages.unit_in_guard_band_text),
         UnitVerdict::NotStated => (Tone::Neutral, messages.unit_not_stated, messages.unit_not_stated_text),
     };
     let mut blocks = vec![Block::heading(heading, 4), Block::paragraph(text)];

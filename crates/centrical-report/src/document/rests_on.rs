@@ -7,7 +7,7 @@ use super::objection::cause;
 use crate::evaluation::{exact, symbol};
 use crate::language::Language;
 
-/// Effects that the first layer of a report names: more than these tell a hurried reader no more.
+/// Effects that a certificate and the first layer of a report name: more than these tell a hurried reader no more.
 const WORST: usize = 3;
 
 /// Rows of the table in full.
@@ -46,7 +46,7 @@ pub(crate) fn counts_as_exact(result: &CalibrationResult, language: Language) ->
 }
 
 /// What the stated uncertainties presuppose of the machine, or of the rests; and what they include because residuals do not exclude it.
-pub(crate) fn presupposed(result: &CalibrationResult, language: Language) -> String {
+fn presupposed(result: &CalibrationResult, language: Language) -> String {
     let messages = language.messages();
     let presupposed = if result.model.has_arm() { messages.presupposed } else { messages.presupposed_of_rests };
     let size = |size: f64| format!("{} {}", language.significant(size / MICRO_G, 2), language.unit("ug"));
@@ -61,6 +61,19 @@ pub(crate) fn presupposed(result: &CalibrationResult, language: Language) -> Str
         sentences.push((messages.words.turning)(turning.arcs, &share, [&rate, &radius, &size(turning.acceleration)]));
     }
     sentences.join(" ")
+}
+
+/// What the stated uncertainties presuppose, in a sentence for each of the worst effects.
+pub(crate) fn presuppositions(result: &CalibrationResult, language: Language) -> String {
+    let messages = language.messages();
+    let worst = result.rests_on.iter().take(WORST).map(|effect| rests_on_sentence(effect, language));
+    let worst: Vec<String> = worst.collect();
+    let effects = if worst.is_empty() {
+        String::new()
+    } else {
+        format!(" {}: {}.", messages.rests_on_sentence, worst.join("; "))
+    };
+    format!("{}{effects}", presupposed(result, language))
 }
 
 fn table(result: &CalibrationResult, rows: usize, language: Language) -> Table {

@@ -29,6 +29,8 @@ pub struct Judged {
     /// Whether it conforms; nothing can be stated of what the data do not determine, or from a result that is not
     /// acceptable.
     pub conforms: Option<bool>,
+    /// Whether it is not accepted although the value lies within the limits: by less than the guard band.
+    pub is_in_guard_band: bool,
 }
 
 /// What is said of the unit as a whole.
@@ -36,8 +38,10 @@ pub struct Judged {
 pub enum UnitVerdict {
     /// Every limit is kept.
     Within,
-    /// A limit is not kept.
+    /// A value lies beyond a limit.
     Outside,
+    /// All values lie within their limits, some of them by less than the guard band: they are not accepted.
+    InGuardBand,
     /// No limit is known not to be kept, but not all of them are known to be.
     NotStated,
 }
@@ -51,8 +55,10 @@ impl UnitStatement {
                 Limited::Parameter(name) => (parameter(result, name), None),
                 Limited::CompensatedReading(axis) => worst_reading(result, *axis, &limit, decision.rule).unzip(),
             };
-            let conforms = value.filter(|_| is_acceptable).map(|value| margin(value, &limit, decision.rule) >= 0.0);
-            Judged { limit, value, plateau, conforms }
+            let judged = value.filter(|_| is_acceptable);
+            let conforms = judged.map(|value| margin(value, &limit, decision.rule) >= 0.0);
+            let is_inside = judged.is_some_and(|value| margin(value, &limit, DecisionRule::Simple) >= 0.0);
+            Judged { limit, value, plateau, conforms, is_in_guard_band: conforms == Some(false) && is_inside }
         };
         Self {
             specification: decision.specification.clone(),
@@ -63,8 +69,9 @@ impl UnitStatement {
 
     /// What is said of the unit as a whole.
     pub fn verdict(&self) -> UnitVerdict {
-        if self.judged.iter().any(|judged| judged.conforms == Some(false)) {
-            UnitVerdict::Outside
+        let mut broken = self.judged.iter().filter(|judged| judged.conforms == Some(false)).peekable();
+        if broken.peek().is_some() {
+            if broken.all(|judged| judged.is_in_guard_band) { UnitVerdict::InGuardBand } else { UnitVerdict::Outside }
         } else if self.judged.iter().any(|judged| judged.conforms.is_none()) {
             UnitVerdict::NotStated
         } else {

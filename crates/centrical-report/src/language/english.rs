@@ -62,6 +62,7 @@ pub(crate) const ENGLISH: Messages = Messages {
     outlying_plateaus: "plateaus that stand out",
     held_out_plateaus: "Plateaus held out of the fit",
     patterns_found: "patterns in the residuals",
+    further_patterns: "further patterns:",
     worst_mounting: "Worst of the mountings, each predicted from all others",
     steadiness: "Steadiness",
     steadiness_note: "How the readings moved within plateaus and over the session, with standard uncertainties; what \
@@ -86,8 +87,9 @@ pub(crate) const ENGLISH: Messages = Messages {
     tilt_at_rest: "Tilt by rest",
     tilts_agree: "they agree",
     tilt_absent: "no term turns with the arm: the times of the records are in another unit, or the recorder averages over a revolution",
-    tilts_differ: "they differ: the axis is not the same while it spins, or something else turns with it",
+    tilts_differ: "they differ: the axis is not the same while it spins, something else turns with it, or an angle at rest is not the stated one",
     tilt_reversed: "it turns the other way: the sense of rotation is wrong",
+    tilt_disturbed: "left out, since something else turns with the arm",
     tilts_scatter: "the plateaus’ own tilts scatter",
     not_used: "Samples not used",
     spikes: "spikes",
@@ -215,7 +217,7 @@ pub(crate) const ENGLISH: Messages = Messages {
     before_adjustment: "Before adjustment, ± U",
     calibrated_before_adjustment: "Calibration before the adjustment",
     after_adjustment: "After adjustment, ± U",
-    no_adjustment: "The unit was not adjusted or repaired.",
+    no_adjustment: "No adjustment or repair of the unit is stated.",
     errors_of_readings: "Readings as received carry the error “before”; compensated with the parameters above they carry the \
         error “after”.",
     conformity: "Statement of conformity",
@@ -228,6 +230,7 @@ pub(crate) const ENGLISH: Messages = Messages {
     limits: "Limits",
     conforms: "conforms",
     does_not_conform: "does not conform",
+    in_guard_band: "within by less than U",
     conformity_not_stated: "not stated",
     authorised: "Authorised by",
     responsible: "Persons responsible",
@@ -244,10 +247,12 @@ pub(crate) const ENGLISH: Messages = Messages {
     specific_force: "Specific force",
     unit_within: "Unit within its limits",
     unit_outside: "Unit not within its limits",
+    unit_in_guard_band: "Unit not shown to be within its limits",
     unit_not_stated: "Unit: conformity not stated",
     unit_not_asked: "Unit: no limits given",
     unit_within_text: "Every limit below is kept by the decision rule.",
     unit_outside_text: "By the decision rule these limits are not kept:",
+    unit_in_guard_band_text: "The values lie within the limits. By less than U, and by the decision rule not accepted, are:",
     unit_not_stated_text: "Nothing is stated from a calibration that is not acceptable, or of a parameter that the data do not \
         determine.",
     unit_not_asked_text: "The verdict on the left is on the calibration alone. Whether the unit meets a specification is \

@@ -39,7 +39,7 @@ pub fn compensation_text(compensated: &Compensated, certificate: &Certificate, o
     }
     let words = format!(
         "{} compensated, range {} on each axis; the inverse is unique there, and could be asked for {farthest}",
-        counted(compensated.readings, "reading"),
+        counted(compensated.readings - compensated.outside, "reading"),
         g(range)
     );
     screen.say(0, &words);

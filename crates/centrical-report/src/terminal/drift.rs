@@ -1,8 +1,8 @@
 //! How steady the readings were, as text for the terminal.
 
 use centrical_session::{
-    CalibrationResult, CreepSummary, DriftSummary, LeftOutSummary, MICRO_G, PlateauDriftVerdict, SessionDriftVerdict,
-    TiltSummary, TiltVerdict,
+    CalibrationResult, CreepSummary, DisturbedPlateau, DriftSummary, LeftOutSummary, MICRO_G, PlateauDriftVerdict,
+    SessionDriftVerdict, TiltSummary, TiltVerdict,
 };
 
 use super::screen::Screen;
@@ -122,7 +122,8 @@ fn tilts(screen: &mut Screen, tilt: &TiltSummary) {
     let verdict = match tilt.verdict() {
         TiltVerdict::Agree => "they agree".to_owned(),
         TiltVerdict::Differ => {
-            "they differ: the axis is not the same while it spins, or something else turns with it".to_owned()
+            "they differ: the axis is not the same while it spins, something else turns with it, or an angle at rest is not the stated one"
+                .to_owned()
         }
         TiltVerdict::Absent => {
             "no term turns with the arm: the times of the records are in another unit, or the recorder averages over a revolution"
@@ -143,6 +144,11 @@ fn tilts(screen: &mut Screen, tilt: &TiltSummary) {
             tilt.chi_squared
         ),
     );
+    for DisturbedPlateau { mounting, index, tilt } in &tilt.disturbed {
+        let (place, size) = (format!("{mounting}:{}", index + 1), 1e6 * tilt);
+        let words = "something else turns with the arm there, such as a vibration of the machine";
+        screen.fact("", &format!("left out: {place}, {size:.0} urad; {words}"));
+    }
     if tilt.scatters() {
         screen.fact(
             "",

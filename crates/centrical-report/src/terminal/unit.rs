@@ -18,10 +18,15 @@ pub fn unit_text(unit: &UnitStatement) -> Screen {
         UnitVerdict::NotStated => {
             screen.marked(Emphasis::Warning, "UNIT", &format!("conformity not stated: {specification}"));
         }
-        UnitVerdict::Outside => {
+        UnitVerdict::Outside | UnitVerdict::InGuardBand => {
             for broken in unit.judged.iter().filter(|judged| judged.conforms == Some(false)) {
                 let words = judged_in_words(broken, Language::English);
-                screen.marked(Emphasis::NotAcceptable, "UNIT NOT WITHIN ITS LIMITS", &words);
+                let mark = if broken.is_in_guard_band {
+                    "UNIT WITHIN ITS LIMITS BY LESS THAN U, NOT ACCEPTED"
+                } else {
+                    "UNIT NOT WITHIN ITS LIMITS"
+                };
+                screen.marked(Emphasis::NotAcceptable, mark, &words);
             }
             screen.say(2, specification);
         }

@@ -35,7 +35,7 @@ pub(crate) struct RecordFindings {
 impl RecordFindings {
     /// Those of a result; none where it has none.
     pub fn of(result: &CalibrationResult) -> Option<Self> {
-        let found = Self { drift: result.drift.clone(), tilt: result.tilt, speeds: result.speeds.clone() };
+        let found = Self { drift: result.drift.clone(), tilt: result.tilt.clone(), speeds: result.speeds.clone() };
         let has_any = found.drift.is_some() || found.tilt.is_some() || found.speeds.is_some();
         has_any.then_some(found)
     }
@@ -61,7 +61,7 @@ impl RecordFindings {
             .drift
             .as_ref()
             .map(|drift| ("drift", drift.probability, chi_squared_tail(drift.chi_squared, drift.degrees_of_freedom)));
-        let of_tilt = self.tilt.map(|tilt| ("tilt", tilt.probability, chi_squared_tail(tilt.chi_squared, 1)));
+        let of_tilt = self.tilt.as_ref().map(|tilt| ("tilt", tilt.probability, chi_squared_tail(tilt.chi_squared, 1)));
         let is_other = |(_, found, expected): &(&str, f64, f64)| (found - expected).abs() > SAME_PROBABILITY;
         let (name, found, expected) = of_drift.into_iter().chain(of_tilt).find(is_other)?;
         Some((format!("{KEY}.{name}.probability = {found:e}"), format!("{expected:e}, that of its chi_squared")))

@@ -103,7 +103,7 @@ pub struct RepeatedPlateau {
 }
 
 /// The tilt of the axis of rotation seen while spinning, against the fitted one, which is known from rest.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TiltSummary {
     /// Tilt by the fit [rad].
     pub at_rest: f64,
@@ -117,6 +117,9 @@ pub struct TiltSummary {
     pub reversed: f64,
     /// Plateaus that tell.
     pub plateaus: usize,
+    /// Plateaus in which something else turns with the arm, left out.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub disturbed: Vec<DisturbedPlateau>,
     /// chi^2 of the plateaus about their mean, with one degree of freedom less than plateaus.
     pub scatter_chi_squared: f64,
     /// Probability of so large a scatter by chance.
@@ -125,6 +128,17 @@ pub struct TiltSummary {
     pub chi_squared: f64,
     /// Probability of so large a difference by chance.
     pub probability: f64,
+}
+
+/// A plateau in which something turns with the arm that no tilt makes.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct DisturbedPlateau {
+    /// Mounting, counted from 1.
+    pub mounting: usize,
+    /// The plateau of its schedule, counted from 0.
+    pub index: usize,
+    /// The tilt that it looks like [rad].
+    pub tilt: f64,
 }
 
 /// What the two tilts say of each other.
@@ -164,8 +178,13 @@ pub enum SessionDriftVerdict {
     Seen,
 }
 
-impl From<TiltComparison> for TiltSummary {
-    fn from(tilt: TiltComparison) -> Self {
+impl TiltSummary {
+    fn new(tilt: &TiltComparison, set_points: &[SetPoint]) -> Self {
+        let disturbed = |&(set_point, tilt): &(usize, f64)| {
+            let mounting = set_points[set_point].mounting;
+            let start = set_points.iter().position(|s| s.mounting == mounting).unwrap_or(0);
+            DisturbedPlateau { mounting: mounting + 1, index: set_point - start, tilt }
+        };
         Self {
             at_rest: tilt.at_rest,
             at_rest_uncertainty: tilt.at_rest_uncertainty,
@@ -173,15 +192,14 @@ impl From<TiltComparison> for TiltSummary {
             spinning_uncertainty: tilt.spinning_uncertainty,
             reversed: tilt.reversed,
             plateaus: tilt.plateaus,
+            disturbed: tilt.disturbed.iter().map(disturbed).collect(),
             scatter_chi_squared: tilt.scatter_chi_squared,
             scatter_probability: tilt.scatter_probability,
             chi_squared: tilt.chi_squared,
             probability: tilt.probability,
         }
     }
-}
 
-impl TiltSummary {
     /// What the two tilts say of each other.
     pub fn verdict(&self) -> TiltVerdict {
         match Level::Real.is_passed_by(self.probability) {
@@ -211,7 +229,7 @@ impl TiltSummary {
             spins.then_some(OncePerRevolution { set_point, quadratures, covariance })
         };
         let terms: Vec<OncePerRevolution> = reduced.plateaus.iter().enumerate().filter_map(term).collect();
-        calibration.tilt_while_spinning(&terms).map(Self::from)
+        calibration.tilt_while_spinning(&terms).map(|tilt| Self::new(&tilt, set_points))
     }
 }
 

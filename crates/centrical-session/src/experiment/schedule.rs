@@ -14,6 +14,9 @@ use crate::quantity::{Dimension, Quantity};
 /// Speeds above this [rad/s], a million revolutions a minute, are a mistaken unit.
 pub(crate) const FASTEST: f64 = 1.1e5;
 
+/// No arm is longer [m].
+const LONGEST_ARM: f64 = 50.0;
+
 /// Shortest and longest plateau [s].
 const DURATIONS: (f64, f64) = (1e-3, 1e7);
 
@@ -27,7 +30,7 @@ pub(crate) fn mountings(file: &Path, tables: &[MountingTable], positions: &[Posi
             let found = format!("unknown position {}", quoted(table.position.as_bytes()));
             at.unexpected("position", found, format!("one of {}", known.join(", ")))
         })?;
-        let arm = at.point("arm", &table.arm)?;
+        let arm = at.point("arm", &table.arm, LONGEST_ARM)?;
         if arm[0] < 0.0 {
             let expected = "a radius arm[0] of zero or more (turn the unit with another position instead)";
             return Err(at.unexpected("arm", format!("{arm:?}"), expected));

@@ -47,12 +47,12 @@ impl<'a> TomlPath<'a> {
         quantity.si(dimension).map_err(|not| self.unexpected(key, not.found, not.expected))
     }
 
-    /// A point of three coordinates [m], each within a kilometre: beyond it a unit was mistaken.
-    pub fn point(&self, key: &str, point: &[Quantity; 3]) -> Result<[f64; 3], Error> {
-        const KILOMETRE: (f64, f64) = (-1e3, 1e3);
+    /// A point of three coordinates [m], each of `most` or less: beyond it a unit was mistaken.
+    pub fn point(&self, key: &str, point: &[Quantity; 3], most: f64) -> Result<[f64; 3], Error> {
+        let meaning = format!("coordinates within {most} m (a number without a unit is in m)");
         let mut coordinates = [0.0; 3];
         for (coordinate, quantity) in coordinates.iter_mut().zip(point) {
-            *coordinate = self.bounded(key, quantity, Dimension::Length, KILOMETRE, "coordinates below 1 km")?;
+            *coordinate = self.bounded(key, quantity, Dimension::Length, (-most, most), &meaning)?;
         }
         Ok(coordinates)
     }

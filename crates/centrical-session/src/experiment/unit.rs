@@ -13,10 +13,12 @@ use crate::record::Scale;
 
 /// Proof masses and the reference point.
 pub(crate) fn geometry(file: &Path, table: &UnitTable) -> Result<Unit, Error> {
+    /// No unit is larger [m].
+    const LARGEST: f64 = 1.0;
     let at = TomlPath::table(file, "unit");
     let mut rho_z = Matrix3::zeros();
     for (j, point) in table.proof_masses.iter().flatten().enumerate() {
-        rho_z.set_column(j, &at.point("proof_masses", point)?.into());
+        rho_z.set_column(j, &at.point("proof_masses", point, LARGEST)?.into());
     }
     let reference = match table.reference.as_deref() {
         None | Some("first-proof-mass") => ReferencePoint::FirstProofMass,

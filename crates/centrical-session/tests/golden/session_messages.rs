@@ -185,6 +185,11 @@ fn unit() {
             r#"[unit], proof_masses: found "1 s", expected a length such as "0.5 m" or a number in m (units: m, cm, mm, um, in)"#,
         ),
         (
+            "[0, 0, 0], [0.021",
+            "[0, 0, 0], [21",
+            "[unit], proof_masses: found 21.0, expected coordinates within 1 m (a number without a unit is in m)",
+        ),
+        (
             "output_unit",
             "reference = \"own-axes\"\noutput_unit",
             r#"[unit], proof_masses: found [[0.0, 0.0, 0.0], [0.021, 0.012, 0.0105], [0.015, -0.01, -0.014]], expected coordinate j of point j at zero (reference = "own-axes"), or reference = "first-proof-mass""#,
@@ -313,7 +318,7 @@ fn mountings() {
         (
             "arm = [0.5, 0, 0]",
             "arm = [1e300, 0, 0]",
-            r"[[mounting]] 1, arm: found 1e300, expected coordinates below 1 km",
+            r"[[mounting]] 1, arm: found 1e300, expected coordinates within 50 m (a number without a unit is in m)",
         ),
         (
             "arm = [0.5, 0, 0]",

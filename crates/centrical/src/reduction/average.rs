@@ -94,7 +94,7 @@ impl<'a> Averaging<'a> {
         if strips.rejects_in_steps() {
             // A tone at half the sampling rate has two levels and the median takes one, at a third two of three: the mean is between them.
             strips.take_all();
-            let (_, of_all) = strips.solve().ok_or_else(|| self.aliased())?;
+            let (_, of_all) = strips.solve().ok_or_else(|| self.singular(samples.len()))?;
             fit = self.fit_from(&samples, &mut strips, &of_all);
         }
         self.fit = Some(fit?);
@@ -119,7 +119,7 @@ impl<'a> Averaging<'a> {
             if 2 * good <= samples.len() {
                 return Err(samples.unsteady(self.index, good));
             }
-            let (triangle, coefficients) = strips.solve().ok_or_else(|| self.aliased())?;
+            let (triangle, coefficients) = strips.solve().ok_or_else(|| self.singular(samples.len()))?;
             if !strips.judge(&coefficients, once_out) {
                 return Ok((triangle, coefficients));
             }
@@ -158,9 +158,15 @@ impl<'a> Averaging<'a> {
         })
     }
 
-    fn aliased(&self) -> ReductionError {
-        let (omega, interval) = (self.window.shape.omega, self.blocks.interval);
-        ReductionError::RevolutionAliased { index: self.index, omega, interval }
+    /// Why so many samples do not separate the terms of the fit.
+    fn singular(&self, samples: usize) -> ReductionError {
+        let (index, Window { span: window, shape }) = (self.index, *self.window);
+        let (omega, interval) = (shape.omega, self.blocks.interval);
+        if 2.0 * samples as f64 * interval < window[1] - window[0] {
+            ReductionError::Interrupted { index, window, samples, interval }
+        } else {
+            ReductionError::RevolutionAliased { index, omega, interval }
+        }
     }
 }
 

@@ -163,9 +163,25 @@ pub enum ReductionError {
         /// Samples that were not taken for spikes last.
         good: usize,
     },
+    /// Most of the time of a plateau has no samples.
+    #[error(
+        "plateau {} from {:.3} s to {:.3} s: found {samples} samples every {interval:.6} s and nothing between, \
+         expected them all the time: the clock jumped, or the record has a gap",
+        index + 1, window[0], window[1]
+    )]
+    Interrupted {
+        /// Index of the plateau in the schedule.
+        index: usize,
+        /// Where it was found [s].
+        window: [f64; 2],
+        /// Samples in the window.
+        samples: usize,
+        /// Sampling interval [s].
+        interval: f64,
+    },
     /// Sampling and rotation in step: a constant and the once-per-revolution term cannot be separated.
     #[error(
-        "plateau {}: {omega} rad/s sampled every {interval} s shows the same phase of the revolution each time; \
+        "plateau {}: {omega:.4} rad/s sampled every {interval:.6} s shows the same phase of the revolution each time; \
          its mean cannot be told from the once-per-revolution term", index + 1
     )]
     RevolutionAliased {

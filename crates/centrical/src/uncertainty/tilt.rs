@@ -14,6 +14,7 @@ use nalgebra::{Complex, Matrix2, Matrix3, Vector2, Vector3};
 use crate::fit::{Calibration, Fit};
 use crate::model::{ArmMotion, MeasurementModel};
 use crate::statistics::chi_squared_tail;
+use crate::uncertainty::verdict::Level;
 
 /// The once-per-revolution term of a plateau.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -27,7 +28,7 @@ pub struct OncePerRevolution {
 }
 
 /// The two tilts. Squares are compared, whose expectation is known however small the tilt is.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct TiltComparison {
     /// Tilt by the fit [rad].
     pub at_rest: f64,
@@ -35,12 +36,14 @@ pub struct TiltComparison {
     pub at_rest_uncertainty: f64,
     /// Tilt seen while spinning, all plateaus together [rad].
     pub spinning: f64,
-    /// Its standard uncertainty [rad].
+    /// Its standard uncertainty [rad]: by the scatter of the plateaus where that is more than their noise.
     pub spinning_uncertainty: f64,
     /// What would be seen if the arm turned the other way [rad]: nothing.
     pub reversed: f64,
     /// Plateaus that tell.
     pub plateaus: usize,
+    /// Plateaus in which something else turns with the arm, left out of all the rest: set point, and the tilt that it looks like [rad].
+    pub disturbed: Vec<(usize, f64)>,
     /// chi^2 of the plateaus about their mean, with one degree of freedom less than plateaus.
     pub scatter_chi_squared: f64,
     /// Probability of so large a scatter by chance.
@@ -60,18 +63,26 @@ impl Calibration<'_> {
         let tilt = Vector2::from(known);
         let covariance = Matrix2::from_fn(|i, j| fit.covariance(alpha[i], alpha[j]).unwrap_or(f64::NAN));
         let seen: Vec<Seen> = terms.iter().filter_map(|term| Seen::of(fit, model, alpha, term)).collect();
-        if seen.is_empty() {
-            return None;
-        }
         // The fit's own uncertainty adds to the square of the tilt as noise adds to that of an amplitude.
         let rest = tilt.norm_squared() - covariance.trace();
         let rest_variance = 4.0 * tilt.dot(&(covariance * tilt)) + 2.0 * (covariance * covariance).trace();
         let variance = |one: &Seen| 4.0 * rest.max(0.0) * one.variance + 4.0 * one.variance * one.variance;
+        let (seen, disturbed) = without_disturbed(seen, variance);
+        if seen.is_empty() {
+            return None;
+        }
         let weight: f64 = seen.iter().map(|one| 1.0 / variance(one)).sum();
         let mean = |of: fn(&Seen) -> f64| seen.iter().map(|one| of(one) / variance(one)).sum::<f64>() / weight;
         let (spinning, reversed) = (mean(|one| one.square), mean(|one| one.reversed));
-        let scatter_chi_squared = seen.iter().map(|one| (one.square - spinning).powi(2) / variance(one)).sum();
-        let chi_squared = (spinning - rest).powi(2) / (1.0 / weight + rest_variance);
+        let scatter_chi_squared: f64 = seen.iter().map(|one| (one.square - spinning).powi(2) / variance(one)).sum();
+        let scatter_probability = chi_squared_tail(scatter_chi_squared, seen.len() - 1);
+        let excess = if Level::Real.is_passed_by(scatter_probability) {
+            scatter_chi_squared / (seen.len() - 1) as f64
+        } else {
+            1.0
+        };
+        let spinning_variance = excess / weight;
+        let chi_squared = (spinning - rest).powi(2) / (spinning_variance + rest_variance);
         // u(A) = u(A^2) / 2A, and where that is more than A itself, sqrt(u(A^2)).
         let uncertainty = |square: f64, variance: f64| {
             let size = square.max(0.0).sqrt().max(0.5 * variance.sqrt().sqrt());
@@ -81,19 +92,48 @@ impl Calibration<'_> {
             at_rest: tilt.norm(),
             at_rest_uncertainty: uncertainty(tilt.norm_squared(), rest_variance),
             spinning: spinning.max(0.0).sqrt(),
-            spinning_uncertainty: uncertainty(spinning, 1.0 / weight),
+            spinning_uncertainty: uncertainty(spinning, spinning_variance),
             reversed: reversed.max(0.0).sqrt(),
             plateaus: seen.len(),
+            disturbed: disturbed.iter().map(|one| (one.set_point, one.square.max(0.0).sqrt())).collect(),
             scatter_chi_squared,
-            scatter_probability: chi_squared_tail(scatter_chi_squared, seen.len() - 1),
+            scatter_probability,
             chi_squared,
             probability: chi_squared_tail(chi_squared, 1),
         })
     }
 }
 
+/// Takes out the plateaus that no others are like: again and again the one farthest from the mean of all others, as long as chance makes a
+/// distance as large in one session of 10,000. More than a fifth of the plateaus are no exceptions: then all stay.
+fn without_disturbed(seen: Vec<Seen>, variance: impl Fn(&Seen) -> f64) -> (Vec<Seen>, Vec<Seen>) {
+    let count = seen.len();
+    let (mut like, mut disturbed) = (seen, Vec::new());
+    while like.len() > 2 {
+        let weight: f64 = like.iter().map(|one| 1.0 / variance(one)).sum();
+        let sum: f64 = like.iter().map(|one| one.square / variance(one)).sum();
+        let distance = |one: &Seen| {
+            let own = 1.0 / variance(one);
+            let others = (sum - one.square * own) / (weight - own);
+            (one.square - others).powi(2) / (variance(one) + 1.0 / (weight - own))
+        };
+        let distances = like.iter().map(distance).enumerate();
+        let Some((farthest, distance)) = distances.max_by(|a, b| a.1.total_cmp(&b.1)) else { break };
+        if !Level::Objection.is_passed_by(count as f64 * chi_squared_tail(distance, 1)) {
+            break;
+        }
+        disturbed.push(like.remove(farthest));
+    }
+    if 5 * disturbed.len() > count {
+        like.append(&mut disturbed);
+        like.sort_by_key(|one| one.set_point);
+    }
+    (like, disturbed)
+}
+
 /// What one plateau shows.
 struct Seen {
+    set_point: usize,
     /// Square of the tilt [rad^2], the mean effect of noise and the Earth's rotation taken off.
     square: f64,
     /// The same of the term turned the other way.
@@ -125,6 +165,7 @@ impl Seen {
         let of_earth = projected(&expected) - tilt * tilt;
         let is_seen = variance.is_finite() && variance > 0.0;
         is_seen.then(|| Self {
+            set_point: term.set_point,
             square: projected(&m) - of_earth - 2.0 * variance,
             reversed: projected(&reversed) - 2.0 * variance,
             variance,

@@ -1,5 +1,7 @@
 //! The tilt seen while spinning is the one of the fit, and drift is seen where it is.
 
+use std::cell::Cell;
+
 use centrical::PairRelation;
 use centrical::position::ThirdPosition;
 use centrical::reduction::{NoiseModel, PlateauMean, Record, ReducedMounting, ScheduledPlateau, plateau_means, reduce};
@@ -57,6 +59,35 @@ fn comparison(tilt: [f64; 2], seed: u64, change: impl Fn(&mut [Vector3<f64>; 2])
         })
         .collect();
     calibration.tilt_while_spinning(&terms).expect("the tilt is determined")
+}
+
+/// Vibration at the rate of rotation in one plateau is that of one plateau: it is named, and left out. Where all plateaus scatter, none is,
+/// and the uncertainty is that of the scatter.
+#[test]
+fn a_disturbed_plateau_is_left_out() {
+    let tilt = [3e-4, -4e-4];
+    let clean = comparison(tilt, 5, |_| ());
+    assert!(clean.disturbed.is_empty(), "{clean:?}");
+    let count = Cell::new(0);
+    let vibrates = |nth: fn(usize) -> bool, size: f64| {
+        count.set(0);
+        let count = &count;
+        move |quadratures: &mut [Vector3<f64>; 2]| {
+            if nth(count.replace(count.get() + 1)) {
+                quadratures[0].x += size;
+            }
+        }
+    };
+    for size in [0.02, 0.5] {
+        let found = comparison(tilt, 5, vibrates(|n| n == 7, size));
+        assert!(found.disturbed.len() == 1 && found.plateaus + 1 == clean.plateaus, "{found:?}");
+        assert!((found.spinning - clean.spinning).abs() < clean.spinning_uncertainty, "{found:?}");
+        assert!((found.spinning_uncertainty / clean.spinning_uncertainty - 1.0).abs() < 0.1, "{found:?}");
+        assert!(found.probability > 1e-3, "{found:?}");
+    }
+    let found = comparison(tilt, 5, vibrates(|n| n % 2 == 0, 0.02));
+    assert!(found.disturbed.is_empty() && found.scatter_probability < 1e-9, "{found:?}");
+    assert!(found.spinning_uncertainty > 10.0 * clean.spinning_uncertainty, "{found:?}");
 }
 
 /// Over sessions of large, small and no tilt: both chi^2 as they should be, the Earth's rotation and the unit's errors

@@ -8,6 +8,10 @@ use crate::uncertainty::holm::holm;
 use crate::uncertainty::validity::chance_of_explaining;
 use crate::uncertainty::verdict::Level;
 
+/// Part of what a rival explains that its own curvature may leave, since the score is linear in it: a shift of 10 mm on an arm of 0.5 m
+/// leaves 1e-4, as its square.
+const CURVATURE: f64 = 1e-3;
+
 /// A rival and what the residuals say of it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RivalTest {
@@ -24,7 +28,7 @@ pub struct RivalTest {
     pub probability: f64,
     /// The same, family-wise over all rivals tested (Holm).
     pub family_wise: f64,
-    /// Probability by the stated variances of as large a chi^2 as it leaves.
+    /// Probability by the stated variances of as large a chi^2 as it leaves, beyond what the curvature of the model may leave.
     pub probability_of_rest: f64,
 }
 
@@ -34,7 +38,7 @@ pub struct Suspects {
     /// Number of rivals that were tested.
     pub tested: usize,
     /// Those whose family-wise probability passes the level asked for: first that which explains most for its number of
-    /// unknowns, then those which the data cannot tell from it, then the others.
+    /// unknowns and those which the data cannot tell from it, by their number of unknowns; then the others.
     pub shown: Vec<RivalTest>,
     /// How many of them the data cannot tell apart, the first included.
     pub alike: usize,
@@ -58,9 +62,11 @@ impl Rivals<'_> {
         tests.retain(|test| test.family_wise < level);
         tests.sort_by(|a, b| b.evidence().total_cmp(&a.evidence()));
         let best = tests.first().map(|test| test.rival);
-        let (alike, others): (Vec<RivalTest>, Vec<RivalTest>) = tests
+        let (mut alike, others): (Vec<RivalTest>, Vec<RivalTest>) = tests
             .into_iter()
             .partition(|test| best.is_some_and(|best| !self.is_told_from(best, test.rival, tested.len())));
+        // Further unknowns explain nothing that chance does not.
+        alike.sort_by_key(|test| test.degrees_of_freedom);
         Suspects { tested: tested.len(), alike: alike.len(), shown: [alike, others].concat() }
     }
 
@@ -85,6 +91,7 @@ impl Rivals<'_> {
         let rank = suspect.seen.rank();
         let statistic = suspect.statistic();
         let left = fit.degrees_of_freedom.saturating_sub(rank);
+        let rest = fit.chi_squared - (1.0 + CURVATURE) * statistic;
         let probability = chance_of_explaining(statistic, rank, fit.chi_squared - statistic, left);
         RivalTest {
             rival: suspect.rival,
@@ -93,7 +100,7 @@ impl Rivals<'_> {
             degrees_of_freedom: rank,
             probability,
             family_wise: 1.0,
-            probability_of_rest: chi_squared_tail((fit.chi_squared - statistic).max(0.0), left),
+            probability_of_rest: chi_squared_tail(rest.max(0.0), left),
         }
     }
 }
