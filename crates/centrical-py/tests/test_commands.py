@@ -314,7 +314,7 @@ def test_what_a_history_is_not_asked(store):
         (lambda: ct.history(store, check=True), "check: found it for 'unit', expected it for 'list' alone"),
         (lambda: ct.history([], "unit"), "results: found none, expected a store"),
         (lambda: ct.history([store, store], "list"), "results: found 2, expected one store"),
-        (lambda: ct.history(store), "no such calibrations, expected calibrations of one unit"),
+        (lambda: ct.history(store), "expected calibrations of one, by serial and model"),
         (lambda: ct.history(store, serial="0001", on="2020-01-01"), "found on = 2020-01-01, expected "),
         (lambda: ct.control_chart("df_1", store, limits=(0.0, -1.0)), "deviation: found -1 about 0, expected"),
         (lambda: ct.control_chart("df_9", store), "no session that determines df_9"),
@@ -327,6 +327,7 @@ def test_control_chart(program, store, tmp_path):
     given = ct.control_chart("df_1", store, accepted=4, rules="western-electric", out=tmp_path / "python")
     options = ["--accepted", "4", "--rules", "western-electric", "--out", tmp_path / "command"]
     assert given.to_json() == program("history", "chart", "df_1", store, *options)
+    assert given.values == given["values"] and isinstance(given.values, list)
     assert_same_files(tmp_path)
     stated = program("history", "chart", "df_1", store, "--centre", "-0.01", "--deviation", "0.001")
     assert ct.control_chart("df_1", store, limits=(-0.01, 0.001)).to_json() == stated

@@ -81,6 +81,9 @@ def test_what_is_no_record_of_rests():
         ct.tumble(RECORD, rate=-1.0)
     with pytest.raises((TypeError, ValueError)):
         ct.tumble(RECORD, readings=["f1", "f2"])
+    for unit in ("furlong", "mV", ""):
+        with pytest.raises(ValueError, match="unit: found .* expected a unit of acceleration"):
+            ct.tumble(RECORD, unit=unit)
 
 
 def test_the_model_of_the_unit_is_stated(tmp_path):

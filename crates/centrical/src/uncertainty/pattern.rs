@@ -9,9 +9,9 @@ use nalgebra::Vector3;
 
 use super::holm::holm;
 use super::rivals::Rivals;
+use super::rivals::Scatter;
 use super::rivals::Suspect;
 use super::rivals::columns::Columns;
-use super::validity::chance_of_explaining;
 use crate::fit::Calibration;
 use crate::model::{Experiment, FitError, Rival, SetPoint};
 
@@ -84,8 +84,7 @@ impl Calibration<'_> {
         let (gain, experiment) = (self.gain()?, self.data().model().experiment());
         let (rank, statistic) = explained.map_or((0, 0.0), |rival| (rival.seen.rank(), rival.statistic()));
         let explained = explained.map(|rival| (&rival.columns, rival.seen.inverse()));
-        let chi_squared = self.fit().chi_squared - statistic;
-        let left = self.fit().degrees_of_freedom.saturating_sub(rank + 1);
+        let scatter = Scatter::of(self)?.without(statistic, rank);
         let observations = self.data().observations();
         let all: Vec<usize> = (0..observations.len()).collect();
         let of_mounting = self.by_mounting();
@@ -107,7 +106,7 @@ impl Calibration<'_> {
                     continue;
                 }
                 let statistic = along * along / square;
-                let probability = chance_of_explaining(statistic, 1, chi_squared - statistic, left);
+                let probability = scatter.chance_of_explaining(statistic, 1);
                 let (amplitude, standard_uncertainty) = (along / square, 1.0 / square.sqrt());
                 let length = columns.lengths[0];
                 list.push(Pattern {

@@ -10,9 +10,11 @@ mod catalogue;
 pub(super) mod columns;
 mod power;
 mod rests_on;
+mod scatter;
 mod score;
 
 pub use catalogue::Rivals;
 pub(super) use catalogue::Suspect;
 pub use rests_on::Unseen;
+pub(super) use scatter::{Scatter, chance_of_explaining};
 pub use score::{RivalTest, Suspects};

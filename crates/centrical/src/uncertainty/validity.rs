@@ -10,10 +10,11 @@
 
 use nalgebra::{DMatrix, DVector, SymmetricEigen, Vector3};
 
+use super::rivals::chance_of_explaining;
 use crate::fit::{Calibration, Data};
 use crate::model::{FitError, Observation};
 use crate::progress::{OnProgress, advance, unwatched};
-use crate::statistics::{chi_squared_tail, f_tail};
+use crate::statistics::chi_squared_tail;
 
 /// A share of a reading below this is rounding: the reading is not redundant, nothing checks it.
 const REDUNDANT: f64 = 1e-8;
@@ -166,13 +167,6 @@ impl<'m> Data<'m> {
             data = data.without(n)?;
         }
     }
-}
-
-/// Probability that `m` combinations explain that much of chi^2 by chance, where `n` others leave `rest`: the larger of that by the stated
-/// variances and that by the scatter of the others. A scatter below what is stated does not say of what too much is stated.
-pub fn chance_of_explaining(statistic: f64, m: usize, rest: f64, n: usize) -> f64 {
-    let f = (statistic / m as f64) / (rest.max(0.0) / n as f64);
-    f_tail(f, m, n).max(chi_squared_tail(statistic, m))
 }
 
 /// Whitened residuals, and the basis whose products are the hat matrix.

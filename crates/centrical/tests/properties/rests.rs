@@ -743,3 +743,32 @@ fn faces_in_known_attitudes_raise_no_alarm() {
         assert!(shown.is_empty(), "{run}: {shown:?}");
     }
 }
+
+/// Rests that scatter tenfold beyond their noise are judged by that scatter along the force, in known attitudes too: across it the
+/// uncertainty of the attitudes hides the scatter.
+#[test]
+fn scatter_of_rests_in_known_attitudes_is_no_rival() {
+    const RUNS: usize = 60;
+    const UNCERTAINTY: f64 = 1e-3;
+    let level = Level::Objection.probability();
+    let mut random = Random::new(32);
+    let directions = (0..27_i32).filter(|n| *n != 13).map(|n| Vector3::new(n / 9 - 1, n / 3 % 3 - 1, n % 3 - 1));
+    let directions: Vec<Vector3<f64>> = directions.map(|up| up.map(f64::from).normalize()).collect();
+    for run in 0..RUNS {
+        let mut normal = |size: f64| Vector3::from_fn(|_, _| size * random.normal());
+        let (mut positions, mut means) = (Vec::new(), Vec::new());
+        for (n, up) in directions.iter().enumerate() {
+            positions.push(Position::known(n.to_string(), up, UNCERTAINTY));
+            let tilted = Rotation3::from_scaled_axis(normal(UNCERTAINTY)) * up;
+            means.push((tilted * GRAVITY + normal(1e-3), Matrix3::identity() * 1e-8));
+        }
+        let (model, observations) = problem(positions, &means);
+        let data = Data::new(&model, observations).unwrap();
+        let calibration = Calibration::exact(&data).unwrap();
+        let rivals = Rivals::of(&calibration, &unwatched).unwrap();
+        let (shown, patterns) = (rivals.suspects(level).shown, calibration.patterns().unwrap());
+        let told = patterns.iter().filter(|pattern| pattern.family_wise < level).count();
+        // By chance in one set of 10,000 each.
+        assert!(shown.is_empty() && told == 0, "{run}: {shown:?}, {told}");
+    }
+}

@@ -3,6 +3,7 @@
 use nalgebra::{DMatrix, Vector3};
 
 use super::columns::{Columns, Seen};
+use super::scatter::Scatter;
 use crate::fit::Calibration;
 use crate::model::{FitError, Kind, MeasurementModel, Parameter, Rival};
 use crate::progress::{OnProgress, advance};
@@ -11,6 +12,7 @@ use crate::progress::{OnProgress, advance};
 pub struct Rivals<'c> {
     pub(super) calibration: &'c Calibration<'c>,
     pub(super) list: Vec<Suspect>,
+    pub(super) scatter: Scatter,
 }
 
 /// One rival with its columns.
@@ -43,7 +45,7 @@ impl<'c> Rivals<'c> {
             left_out.into_iter().partition(|rival| matches!(rival, Rival::Terms(_)));
         let mut list = suspects(calibration, &terms, progress)?;
         list.extend(suspects(calibration, &effects, progress)?);
-        Ok(Self { calibration, list })
+        Ok(Self { calibration, list, scatter: Scatter::of(calibration)? })
     }
 }
 

@@ -88,6 +88,11 @@ impl Columns {
         &self.square - self.followed.tr_mul(&self.followed)
     }
 
+    /// The trace of `s^T s`: expectation of the squared length of `Z^T e`.
+    pub fn redundant_length(&self) -> f64 {
+        self.square.trace() - self.followed.norm_squared()
+    }
+
     /// The square `s^T s` above which a combination is seen: [`REDUNDANT`] squared, and what the uncertainty of attitudes makes. A
     /// turn of observation `n` by its standard uncertainty `u_n` [rad] changes its rows by up to that part: such a rest of a column
     /// follows the noise, and so would its test.

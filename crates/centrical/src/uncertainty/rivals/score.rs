@@ -5,7 +5,6 @@ use super::columns::Seen;
 use crate::model::{Parameter, Rival};
 use crate::statistics::chi_squared_tail;
 use crate::uncertainty::holm::holm;
-use crate::uncertainty::validity::chance_of_explaining;
 use crate::uncertainty::verdict::Level;
 
 /// Part of what a rival explains that its own curvature may leave, since the score is linear in it: a shift of 10 mm on an arm of 0.5 m
@@ -92,7 +91,7 @@ impl Rivals<'_> {
         let statistic = suspect.statistic();
         let left = fit.degrees_of_freedom.saturating_sub(rank);
         let rest = fit.chi_squared - (1.0 + CURVATURE) * statistic;
-        let probability = chance_of_explaining(statistic, rank, fit.chi_squared - statistic, left);
+        let probability = self.scatter.chance_of_explaining(statistic, rank);
         RivalTest {
             rival: suspect.rival,
             sizes: sizes(suspect),
