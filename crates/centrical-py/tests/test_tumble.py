@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import pathlib
+import re
 
 import centrical as ct
 import numpy
@@ -22,6 +23,27 @@ def test_tumble(program, tmp_path):
     # The folder is a session.
     again = ct.calibrate(tmp_path / "python")
     assert (again.values == given.values).all()
+
+
+def test_records_in_memory():
+    file = ct.tumble(RECORD, gravity=9.81523).document
+    rows = numpy.loadtxt(RECORD, delimiter=",", skiprows=1)
+    columns = dict(zip(("t", "f1", "f2", "f3"), rows.T))
+    turned = {"time": 4, "readings": (2, 1, 3)}
+    for records, named in ((rows, {}), (columns, {}), ([columns], {}), (rows[:, [2, 1, 3, 0]], turned)):
+        assert ct.tumble(records, gravity=9.81523, **named).document.parameters == file.parameters
+    attitudes = numpy.loadtxt("examples/tumble/attitudes.csv", delimiter=",", skiprows=1)
+    by_file = ct.tumble(RECORD, attitudes="examples/tumble/attitudes.csv", attitude_uncertainty=1e-3)
+    by_array = ct.tumble(columns, attitudes=attitudes, attitude_uncertainty=1e-3)
+    assert by_array["df_1"].value == pytest.approx(by_file["df_1"].value, rel=1e-9)
+    for wrong, said in (
+        ({"records": rows[:, :3]}, "records[1]: found an array of shape"),
+        ({"records": columns, "readings": ("f1", "f2", "f4")}, "records[1]: found no column 'f4'"),
+        ({"records": RECORD, "readings": ("f1", "f2")}, "readings: found 2 columns, expected three"),
+        ({"records": RECORD, "attitudes": [0, 0, 1], "attitude_uncertainty": 1e-3}, "attitudes: found shape (3,), expected (n, 3)"),
+    ):
+        with pytest.raises(ValueError, match=re.escape(said)):
+            ct.tumble(**wrong)
 
 
 def test_known_attitudes(program, tmp_path):

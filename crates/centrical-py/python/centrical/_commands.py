@@ -20,12 +20,13 @@ from ._noise import Noise, noise_of_array
 from ._paths import paths
 from ._plan import Plan
 from ._progress import Bar
+from ._records import directions, given_records
 from ._result import Result
 
 if TYPE_CHECKING:
     from typing import Literal
 
-    from ._types import File, Form, Format, Language, Method, Path, Quantity, Session
+    from ._types import Array, File, Form, Format, Language, Method, Path, Quantity, Session, Table
 
 
 def calibrate(
@@ -61,7 +62,7 @@ def calibrate(
 
 
 def tumble(
-    records: Path | File | Sequence[Path | File],
+    records: Path | File | Array | Table | Sequence[Path | File | Array | Table],
     *,
     time: str | int = "t",
     rate: Quantity | None = None,
@@ -69,7 +70,7 @@ def tumble(
     unit: str = "m/s^2",
     gravity: Quantity | None = None,
     gravity_uncertainty: Quantity | None = None,
-    attitudes: Path | Iterable[Iterable[float]] | None = None,
+    attitudes: Path | Iterable[Iterable[float]] | Table | None = None,
     attitude_uncertainty: Quantity | None = None,
     turning_radius: Quantity | None = None,
     terms: Iterable[str] | None = None,
@@ -83,13 +84,18 @@ def tumble(
     Parameters
     ----------
     records
-        One record or several of one unit, in any format: paths, bytes, or files that are open.
+        One record or several of one unit, in any format: paths, bytes, files that are open, tables with named columns, or
+        arrays of shape ``(n, 4)`` with time and readings, ``(n, 3)`` with a ``rate``.
+    time, readings
+        Columns of a record by their names, or by their numbers from 1.
     rate
         Sampling rate [Hz], or a text such as ``"100 Hz"``, of records without a column of time.
     unit
         Of the readings: of acceleration, or ``"counts"`` or ``"V"``, whose scale and bias are found.
     gravity
         At the place [m/s^2]; 9.80665 m/s^2, uncertain by 0.02 m/s^2, if it is not given.
+    gravity_uncertainty
+        Its standard uncertainty [m/s^2]; zero of a gravity that is given.
     attitudes
         Attitudes in which the unit was laid down, where they are known, in any order: an array of shape ``(n, 3)`` of the
         direction of up in axes of the case, the path of such a table, or ``"cube"`` for its faces, edges and corners.
@@ -104,6 +110,12 @@ def tumble(
         Of the unit and of the records: histories are of one model and serial number.
     out
         A folder for ``result.json``, the rests as a session, the report and its plots.
+
+    Raises
+    ------
+    ValueError
+        A record without rests, of another unit, or with rests that do not show what is asked for (:class:`InputError`); an
+        argument that is none.
     """
     given = [str(name) for name in terms] if terms is not None else None
     if attitudes is None and attitude_uncertainty is not None:
@@ -112,9 +124,11 @@ def tumble(
     if isinstance(attitudes, (str, os.PathLike)):
         known = (attitudes, attitude_uncertainty)
     elif attitudes is not None:
-        known = ([[float(component) for component in up] for up in attitudes], attitude_uncertainty)
+        known = (directions(attitudes), attitude_uncertainty)
+    if len(readings) != 3:
+        raise ValueError(f"readings: found {len(readings)} columns, expected three")
     at = (gravity, gravity_uncertainty)
-    files = [given_file(f"records[{n}]", record) for n, record in enumerate(paths(records), 1)]
+    files = given_records(records, [*([] if rate is not None else [time]), *readings])
     with Bar("finding rests") as shown:
         return Result(
             _native.tumble(

@@ -24,7 +24,7 @@ class Record(dict[str, Any]):
             raise AttributeError(f"found no {name!r}, expected one of {', '.join(self)}") from None
 
     @property
-    def values(self) -> Any:  # type: ignore[override]
+    def values(self) -> Any:
         """What the document calls ``values``, where it does; the method of a ``dict`` otherwise."""
         return self["values"] if "values" in self else super().values
 
