@@ -78,8 +78,8 @@ impl BinaryFormat {
             #[cfg(feature = "hdf5")]
             Self::Hdf5 | Self::MatHdf5 => named(hdf5::names(source)?),
             #[cfg(not(feature = "hdf5"))]
-            Self::Hdf5 | Self::MatHdf5 => Vec::new(),
-            Self::TdmsIndex => Vec::new(),
+            Self::Hdf5 | Self::MatHdf5 => return Err(without_hdf5(source)),
+            Self::TdmsIndex => return Err(of_index(source)),
         })
     }
 
@@ -98,23 +98,23 @@ impl BinaryFormat {
             Self::Npz => npy::archive_columns(source, &fields)?,
             Self::Mat => mat::columns(source, &fields)?,
             Self::Tdms => tdms::columns(source, &fields)?,
-            Self::TdmsIndex => {
-                let expected = "the file of the same name that ends in .tdms";
-                return Err(Error::content(
-                    source.name(),
-                    Place::Whole,
-                    "the index of a TDMS file, without its numbers",
-                    expected,
-                ));
-            }
+            Self::TdmsIndex => return Err(of_index(source)),
             #[cfg(feature = "hdf5")]
             Self::Hdf5 | Self::MatHdf5 => hdf5::columns(source, self == Self::MatHdf5, &fields, most)?,
             #[cfg(not(feature = "hdf5"))]
-            Self::Hdf5 | Self::MatHdf5 => {
-                let expected = "another format (this program was built without the feature hdf5)";
-                return Err(Error::content(source.name(), Place::Whole, "HDF5", expected));
-            }
+            Self::Hdf5 | Self::MatHdf5 => return Err(without_hdf5(source)),
         };
         Ok(ColumnReader::whole(source.name(), fields, columns, most))
     }
+}
+
+fn of_index(source: &Source) -> Error {
+    let expected = "the file of the same name that ends in .tdms";
+    Error::content(source.name(), Place::Whole, "the index of a TDMS file, without its numbers", expected)
+}
+
+#[cfg(not(feature = "hdf5"))]
+fn without_hdf5(source: &Source) -> Error {
+    let expected = "another format (this program was built without the feature hdf5)";
+    Error::content(source.name(), Place::Whole, "HDF5", expected)
 }

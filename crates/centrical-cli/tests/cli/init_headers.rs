@@ -1,5 +1,6 @@
 //! `centrical init` on files of other headers: FOUND stands beside what they say, and nothing is left out without a word.
 
+use std::f64::consts::PI;
 use std::fs;
 
 use crate::session::Copy;
@@ -53,6 +54,31 @@ fn the_unit_of_speed_stands_in_its_name() {
     for (name, line) in cases {
         let draft = drafted("t,f1,f2,f3", &format!("t,{name}"));
         assert_lines(&draft, &[line, &format!("speed = \"{name}\"  # FOUND")]);
+    }
+}
+
+/// Readings and speed show the radius of the arm: of the units that a speed may be in, one alone makes it an arm.
+#[test]
+fn a_speed_without_a_unit_is_that_of_an_arm() {
+    let arms = |draft: &str| -> Vec<String> {
+        draft.lines().filter(|line| line.starts_with("arm = ")).map(str::to_owned).collect()
+    };
+    let expected = arms(&drafted("t,f1,f2,f3", "t,omega"));
+    assert_eq!(expected.len(), 12);
+    for (unit, factor) in [("rpm", 30.0 / PI), ("deg/s", 180.0 / PI), ("rev/s", 0.5 / PI)] {
+        let copy = Copy::new();
+        for file in fs::read_dir(copy.session().join("telemetry")).unwrap() {
+            let path = file.unwrap().path();
+            let text = fs::read_to_string(&path).unwrap();
+            let row = |line: &str| {
+                let (t, omega) = line.split_once(',').unwrap();
+                format!("{t},{}\n", omega.parse::<f64>().unwrap() * factor)
+            };
+            fs::write(&path, format!("t,speed\n{}", text.lines().skip(1).map(row).collect::<String>())).unwrap();
+        }
+        let draft = draft(&copy, &["records", "telemetry"]);
+        assert_lines(&draft, &[&format!("speed_unit = \"{unit}\"  # GUESS: the file names no unit")]);
+        assert_eq!(arms(&draft), expected);
     }
 }
 

@@ -349,7 +349,8 @@ class Result:
     def __repr__(self) -> str:
         verdict = "acceptable" if self.acceptable else f"not acceptable, {len(self.objections)} objections"
         session = self.document.session
-        return f"<Result of {session.unit_model} {session.unit_serial}, {len(self)} parameters, {verdict}>"
+        unit = f"{session.unit_model} {session.unit_serial}".strip() or "a unit without a name"
+        return f"<Result of {unit}, {len(self)} parameters, {verdict}>"
 
     def _repr_html_(self) -> str:
         figures = "".join(

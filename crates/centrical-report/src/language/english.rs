@@ -230,7 +230,7 @@ pub(crate) const ENGLISH: Messages = Messages {
     limits: "Limits",
     conforms: "conforms",
     does_not_conform: "does not conform",
-    in_guard_band: "within by less than U",
+    in_guard_band: "not accepted",
     conformity_not_stated: "not stated",
     authorised: "Authorised by",
     responsible: "Persons responsible",

@@ -229,7 +229,7 @@ pub(crate) const RUSSIAN: Messages = Messages {
     limits: "Пределы",
     conforms: "соответствует",
     does_not_conform: "не соответствует",
-    in_guard_band: "в допуске, ближе U к пределу",
+    in_guard_band: "не принято",
     conformity_not_stated: "не заявляется",
     authorised: "Утвердил",
     responsible: "Ответственные лица",

@@ -11,7 +11,11 @@ use crate::number::{counted, unsigned_zero, with_uncertainty};
 /// Calibrations of one unit, two by two.
 pub fn comparison_text(report: &ComparisonReport) -> Screen {
     let mut screen = Screen::default();
-    let (emphasis, mark, words) = if report.agree {
+    let (emphasis, mark, words) = if report.agree && report.comparisons.iter().any(|pair| pair.same_files > 0) {
+        let words =
+            "no difference beyond what the uncertainties explain, which two results of the same files show anyway";
+        (Emphasis::Warning, "AGREE", words)
+    } else if report.agree {
         (Emphasis::Acceptable, "AGREE", "no difference beyond what the uncertainties explain")
     } else {
         (Emphasis::NotAcceptable, "DO NOT AGREE", "the reasons stand below")
@@ -49,7 +53,12 @@ fn one_pair(screen: &mut Screen, report: &ComparisonReport, pair: &PairCompariso
     let beyond = pair.differences.iter().filter(|d| d.e_n.abs() > 1.0).count();
     if let (Some(chi_squared), Some(probability)) = (pair.chi_squared, pair.probability) {
         let count = pair.degrees_of_freedom;
-        screen.say(2, &format!("{beyond} of {count} have E_n beyond 1; by chance it is 1 in 20"));
+        screen.say(
+            2,
+            &format!(
+                "{beyond} of {count} have E_n beyond 1; by chance it is 1 in 20, and a DISAGREE in 1 of 100 pairs"
+            ),
+        );
         screen.say(
             2,
             &format!(

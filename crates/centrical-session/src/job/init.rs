@@ -10,6 +10,7 @@ mod column_names;
 mod draft;
 mod experiment_text;
 mod file_roles;
+mod findings;
 mod output_unit;
 mod path_text;
 mod raw;
@@ -43,5 +44,5 @@ pub fn init(request: &InitRequest, progress: OnProgress) -> Result<Draft, Error>
     }
     let mountings = groups.into_iter().map(|group| sighting::sight(group, progress)).collect::<Result<Vec<_>, _>>()?;
     let tumbled = request.tumble.as_deref().map(Tumbled::read).transpose()?;
-    experiment_text::draft(&mountings, tumbled.as_ref(), &unused, request)
+    experiment_text::draft(mountings, tumbled.as_ref(), &unused, request)
 }

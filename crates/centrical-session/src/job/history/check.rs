@@ -61,10 +61,12 @@ fn two_spellings(rows: &[&Row]) -> Vec<Doubt> {
     several.map(|names| Doubt { kind: DoubtKind::Spelling, of: names.into_iter().collect() }).collect()
 }
 
-/// A name without what is mistaken: small Latin letters and digits alone.
+/// A name without what is mistaken: small Latin letters and digits alone. A name of other characters is its own.
 pub fn spelling(name: &str) -> String {
     let letters = name.chars().flat_map(char::to_lowercase).filter(|c| c.is_alphanumeric());
-    letters.map(|c| LOOKALIKES.iter().find(|(cyrillic, _)| *cyrillic == c).map_or(c, |(_, latin)| *latin)).collect()
+    let latin = |c: char| LOOKALIKES.iter().find(|(cyrillic, _)| *cyrillic == c).map_or(c, |(_, latin)| *latin);
+    let spelling: String = letters.map(latin).collect();
+    if spelling.is_empty() { name.to_owned() } else { spelling }
 }
 
 /// Cyrillic letters, and the Latin ones whose capitals look the same.

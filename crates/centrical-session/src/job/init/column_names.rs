@@ -11,8 +11,10 @@ use crate::quantity::Dimension;
 pub(super) struct Label {
     pub column: ColumnName,
     pub unit: Option<&'static str>,
-    /// Why column or unit are likely and not found.
+    /// Why the column is likely and not found.
     pub guess: Option<&'static str>,
+    /// The same of its unit.
+    pub unit_guess: Option<&'static str>,
 }
 
 impl Label {
@@ -24,19 +26,20 @@ impl Label {
         Self {
             column: ColumnName::Name(name.to_owned()),
             unit: found.or(turns),
-            guess: turns.map(|_| "revolutions by its name; \"rad/s\" and \"deg/s\" are others"),
+            guess: None,
+            unit_guess: turns.map(|_| "revolutions by its name; \"rad/s\" and \"deg/s\" are others"),
         }
     }
 
     /// A column of a text without a header.
     pub fn numbered(index: usize) -> Self {
         let guess = Some("no header names the columns; this is their usual order");
-        Self { column: ColumnName::Number(index + 1), unit: None, guess }
+        Self { column: ColumnName::Number(index + 1), unit: None, guess, unit_guess: None }
     }
 
     /// A column of a table that is asked for the usual names.
     pub fn usual(name: &str) -> Self {
-        Self { column: ColumnName::Name(name.to_owned()), unit: None, guess: None }
+        Self { column: ColumnName::Name(name.to_owned()), unit: None, guess: None, unit_guess: None }
     }
 }
 

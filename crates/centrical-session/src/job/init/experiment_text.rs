@@ -4,16 +4,16 @@ use std::path::Path;
 
 use centrical_table::{ColumnName, DecimalSign, TextForm};
 
-use super::attitude::{Attitude, attitude};
+use super::attitude::Attitude;
 use super::column_names::Label;
 use super::draft::{Draft, UNKNOWN};
 use super::file_roles::{FileColumns, Unused};
+use super::findings::Findings;
 use super::output_unit::OutputUnit;
 use super::path_text::relative;
-use super::raw::{Extremes, Raw};
+use super::raw::Raw;
 use super::request::InitRequest;
-use super::schedule::{Set, schedules};
-use super::seats::seats;
+use super::schedule::Set;
 use super::sighting::SeenMounting;
 use super::tumbled::Tumbled;
 use crate::error::Error;
@@ -22,26 +22,18 @@ use crate::settings::toml_text;
 /// The six positions of the source: attitude and pair.
 const SIX: &str = include_str!("six-positions.toml");
 
-/// What all mountings together show.
-struct Findings {
-    unit: OutputUnit,
-    /// Of each mounting: the attitude, and the radius [m].
-    attitudes: Vec<Option<Attitude>>,
-    radii: Vec<Option<f64>>,
-    schedules: Vec<Vec<Set>>,
-}
-
 /// Drafts the file from what the mountings show, and a tumble of the unit.
 ///
 /// # Errors
 /// If the records are in another unit than the tumble.
 pub(super) fn draft(
-    mountings: &[SeenMounting],
+    mut mountings: Vec<SeenMounting>,
     tumbled: Option<&Tumbled>,
     unused: &[Unused],
     request: &InitRequest,
 ) -> Result<Draft, Error> {
-    let findings = Findings::of(mountings, tumbled)?;
+    let findings = Findings::of(&mut mountings, tumbled)?;
+    let mountings = mountings.as_slice();
     let mut draft = Draft::default();
     heading(&mut draft, mountings);
     for Unused { path, reason } in unused {
@@ -80,22 +72,6 @@ pub(super) fn draft(
     draft.text.truncate(draft.text.trim_end().len());
     draft.text.push('\n');
     Ok(draft)
-}
-
-impl Findings {
-    fn of(mountings: &[SeenMounting], tumbled: Option<&Tumbled>) -> Result<Self, Error> {
-        let extremes: Vec<Option<Extremes>> = mountings.iter().map(SeenMounting::extremes).collect();
-        let mut unit = OutputUnit::of(mountings, &extremes)?;
-        if let Some(tumbled) = tumbled {
-            unit.agree_with(tumbled, mountings)?;
-        }
-        let in_si: Vec<Option<Extremes>> = extremes.iter().map(|e| e.as_ref()?.in_si(&unit.raw()?)).collect();
-        let attitudes: Vec<Option<Attitude>> =
-            in_si.iter().map(|e| e.as_ref().and_then(|e| attitude(&e.rest, &e.fast))).collect();
-        let radii: Vec<Option<f64>> = in_si.iter().map(|e| e.as_ref().map(Extremes::radius)).collect();
-        let radii = seats(&attitudes, &radii);
-        Ok(Self { unit, attitudes, radii, schedules: schedules(mountings) })
-    }
 }
 
 fn heading(draft: &mut Draft, mountings: &[SeenMounting]) {
@@ -268,9 +244,9 @@ fn of_telemetry(draft: &mut Draft, telemetry: &FileColumns, of_records: Option<&
     }
     if let Some(speed) = &telemetry.speed {
         let line = format!("speed = {}", column(&speed.column));
-        draft.shown(speed.guess.filter(|_| speed.unit.is_none()), &line, "speed");
+        draft.shown(speed.guess, &line, "speed");
         if let Some(unit) = speed.unit {
-            draft.shown(speed.guess, &format!("speed_unit = \"{unit}\""), "the unit in the header");
+            draft.shown(speed.unit_guess, &format!("speed_unit = \"{unit}\""), "the unit in the header");
         } else {
             draft.guess("speed_unit = \"rad/s\"", "the file names no unit; \"rpm\" and \"deg/s\" are others");
         }

@@ -172,6 +172,19 @@ impl SeenMounting {
         self.group.records.iter().map(|file| &file.path)
     }
 
+    /// Takes speeds, which counted as in rad/s, to the unit that their file does not name.
+    pub(super) fn take_speed_unit(&mut self, unit: &'static str) {
+        let Some(speed) = self.group.telemetry.as_mut().and_then(|file| file.speed.as_mut()) else { return };
+        if speed.unit.is_some() {
+            return;
+        }
+        let factor = Dimension::Speed.factor(unit).unwrap_or(1.0);
+        speed.unit = Some(unit);
+        speed.unit_guess = Some("the file names no unit; in others the arm would be centimetres or many metres long");
+        let speeds = self.plateaus.iter_mut().filter_map(|plateau| plateau.speed.as_mut());
+        speeds.flatten().for_each(|value| *value *= factor);
+    }
+
     /// Mean readings at rest and at the fastest plateau, where both are seen.
     pub(super) fn extremes(&self) -> Option<Extremes> {
         let rest = self.plateaus.iter().find(|plateau| plateau.is_rest() == Some(true))?.readings?;
