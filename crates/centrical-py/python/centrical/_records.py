@@ -10,7 +10,7 @@ import numpy as np
 
 from ._given import given_file
 from ._paths import paths
-from ._table import columns_named, is_table, numbers
+from ._table import equal_columns, is_table, numbers
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -25,11 +25,7 @@ def given_records(records: Any, names: Sequence[str | int]) -> list[Any]:
 
 def _file(argument: str, record: Any, names: Sequence[str | int]) -> Any:
     if is_table(record):
-        columns = columns_named(record, [str(name) for name in names], argument)
-        lengths = [len(column) for column in columns]
-        if len(set(lengths)) > 1:
-            raise ValueError(f"{argument}: found columns of {lengths} rows, expected as many of each")
-        return argument, _saved(names, columns)
+        return argument, _saved(names, equal_columns(record, [str(name) for name in names], argument))
     if not isinstance(record, np.ndarray):
         return given_file(argument, record)
     values = numbers(argument, record)
@@ -52,9 +48,10 @@ def _saved(names: Sequence[str | int], columns: Sequence[NDArray[np.float64]]) -
 def directions(attitudes: Any) -> list[list[float]]:
     """Directions of up: of an array of shape ``(n, 3)``, or of a table with the columns up_1, up_2, up_3."""
     if is_table(attitudes):
-        up = np.column_stack(columns_named(attitudes, ("up_1", "up_2", "up_3"), "attitudes"))
+        up = np.column_stack(equal_columns(attitudes, ("up_1", "up_2", "up_3"), "attitudes"))
     else:
         up = numbers("attitudes", attitudes if isinstance(attitudes, np.ndarray) else list(attitudes))
     if up.ndim != 2 or up.shape[1] != 3:
         raise ValueError(f"attitudes: found shape {up.shape}, expected (n, 3)")
-    return [[float(component) for component in row] for row in up]
+    rows: list[list[float]] = up.tolist()
+    return rows

@@ -27,11 +27,8 @@ def columns_of(table: Any) -> NDArray[np.float64]:
     >>> columns_of({"t": [0.0], "f1": [1.0], "f2": [2.0], "f3": [3.0]})
     array([[1., 2., 3.]])
     """
-    columns = columns_named(table, NAMES, "readings")
-    lengths = [len(column) for column in columns]
-    if len(set(lengths)) > 1:
-        raise ValueError(f"readings: found columns of {lengths} rows, expected as many of each")
-    rows = np.empty((lengths[0], 3))
+    columns = equal_columns(table, NAMES, "readings")
+    rows = np.empty((len(columns[0]), 3))
     for axis, column in enumerate(columns):
         rows[:, axis] = column
     return rows
@@ -57,6 +54,15 @@ def columns_named(table: Any, names: Sequence[str], argument: str) -> list[NDArr
     """The columns of these names, of numbers."""
     readable = _readable(table, argument)
     return [_column(readable, name, names, argument) for name in names]
+
+
+def equal_columns(table: Any, names: Sequence[str], argument: str) -> list[NDArray[np.float64]]:
+    """The columns of these names, of numbers, which have equally many rows."""
+    columns = columns_named(table, names, argument)
+    lengths = [len(column) for column in columns]
+    if len(set(lengths)) > 1:
+        raise ValueError(f"{argument}: found columns of {lengths} rows, expected as many of each")
+    return columns
 
 
 def names_of(table: Any) -> list[str]:

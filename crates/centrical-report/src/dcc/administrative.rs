@@ -146,13 +146,9 @@ fn statements(xml: &mut Xml, result: &CalibrationResult, issuer: &Issuer, langua
                 }
             });
         }
-        for (name, text) in [
-            (messages.counts_as_exact.to_owned(), counts_as_exact(result, language)),
-            (presuppositions(result, language), String::new()),
-        ] {
-            let text = if text.is_empty() { name } else { format!("{name}: {text}") };
-            statement(xml, "7.8.4.1 a", &text);
-        }
+        let exact = format!("{}: {}", messages.counts_as_exact, counts_as_exact(result, language));
+        statement(xml, "7.8.4.1 a", &exact);
+        statement(xml, "7.8.4.1 a", &presuppositions(result, language));
         for (name, text) in drift_facts(result, language) {
             statement(xml, "7.8.2.1 m", &format!("{name}: {text}"));
         }

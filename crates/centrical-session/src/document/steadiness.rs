@@ -181,9 +181,8 @@ pub enum SessionDriftVerdict {
 impl TiltSummary {
     fn new(tilt: &TiltComparison, set_points: &[SetPoint]) -> Self {
         let disturbed = |&(set_point, tilt): &(usize, f64)| {
-            let mounting = set_points[set_point].mounting;
-            let start = set_points.iter().position(|s| s.mounting == mounting).unwrap_or(0);
-            DisturbedPlateau { mounting: mounting + 1, index: set_point - start, tilt }
+            let (mounting, index) = place(set_points, set_point);
+            DisturbedPlateau { mounting, index, tilt }
         };
         Self {
             at_rest: tilt.at_rest,
@@ -339,6 +338,13 @@ fn beyond_speed(calibration: &Calibration, reduced: &Reduced, slopes: &[Slope], 
     slopes.iter().enumerate().map(beyond).collect()
 }
 
+/// The mounting of a set point, counted from 1, and its place in the schedule, counted from 0.
+fn place(set_points: &[SetPoint], set_point: usize) -> (usize, usize) {
+    let mounting = set_points[set_point].mounting;
+    let start = set_points.iter().position(|other| other.mounting == mounting).unwrap_or(0);
+    (mounting + 1, set_point - start)
+}
+
 fn repeated(calibration: &Calibration, reduced: &Reduced) -> Vec<RepeatedPlateau> {
     let model = calibration.data().model();
     let set_points = &model.experiment().set_points;
@@ -348,16 +354,12 @@ fn repeated(calibration: &Calibration, reduced: &Reduced) -> Vec<RepeatedPlateau
         covariance: plateau.covariance,
     };
     let plateaus: Vec<Observation> = reduced.plateaus.iter().enumerate().map(plateau).collect();
-    let summary = |repeat: Repeat| {
-        let mounting = set_points[repeat.set_points[0]].mounting;
-        let start = set_points.iter().position(|s| s.mounting == mounting).unwrap_or(0);
-        RepeatedPlateau {
-            mounting: mounting + 1,
-            indices: repeat.set_points.map(|set_point| set_point - start),
-            difference: repeat.difference.into(),
-            chi_squared: repeat.chi_squared,
-            probability: repeat.probability,
-        }
+    let summary = |repeat: Repeat| RepeatedPlateau {
+        mounting: place(set_points, repeat.set_points[0]).0,
+        indices: repeat.set_points.map(|set_point| place(set_points, set_point).1),
+        difference: repeat.difference.into(),
+        chi_squared: repeat.chi_squared,
+        probability: repeat.probability,
     };
     repeats(model, calibration.fit().state(), &plateaus).into_iter().map(summary).collect()
 }

@@ -57,9 +57,7 @@ fn pair_of(
         let date = result.session.date.parse().unwrap_or(Date { year: 1970, month: 1, day: 1 });
         Calibrated::on(date, file.display().to_string(), result.row(&[]), &mut kinds)
     });
-    if first.session.unit() == second.session.unit() {
-        refuse_other_output(&a, &b)?;
-    }
+    refuse_other_output(&a, &b)?;
     if let Some(output) = b.output.clone() {
         a.restate(&output);
     }

@@ -46,8 +46,11 @@ pub(super) fn parts(source: &Source, fields: &[Field]) -> Result<Parts, Error> {
 
 /// The names of the columns.
 pub(super) fn names(source: &Source) -> Result<Vec<String>, Error> {
-    let metadata = metadata(source)?;
-    Ok(metadata.file_metadata().schema_descr().columns().iter().map(|column| column.path().string()).collect())
+    Ok(column_names(&metadata(source)?))
+}
+
+fn column_names(metadata: &ParquetMetaData) -> Vec<String> {
+    metadata.file_metadata().schema_descr().columns().iter().map(|column| column.path().string()).collect()
 }
 
 fn metadata(source: &Source) -> Result<ParquetMetaData, Error> {
@@ -79,7 +82,7 @@ fn find(file: &Path, metadata: &ParquetMetaData, durations: &[String], field: &F
         Err(Error::content(file, Place::Column(field.name.to_string()), found, expected))
     };
     let columns = metadata.file_metadata().schema_descr().columns();
-    let names: Vec<String> = columns.iter().map(|column| column.path().string()).collect();
+    let names = column_names(metadata);
     let mut places = match &field.name {
         ColumnName::Name(name) => (0..columns.len()).filter(|i| names[*i] == *name).collect(),
         ColumnName::Number(number) => vec![number.wrapping_sub(1)],

@@ -122,6 +122,17 @@ impl Parameters {
         self.list.iter().position(|p| p.name == name)
     }
 
+    /// Their groups, each once, in the order of the parameters.
+    pub fn groups(&self) -> Vec<Group> {
+        let mut groups = Vec::new();
+        for parameter in self {
+            if !groups.contains(&parameter.group) {
+                groups.push(parameter.group);
+            }
+        }
+        groups
+    }
+
     /// Indices of the parameters that `name` stands for: a parameter (`drho_22`), a group (`proof mass`), or the
     /// stem of several (`dR`, `delta_1`, `G1`). Empty when it stands for none.
     pub fn select(&self, name: &str) -> Vec<usize> {

@@ -158,7 +158,7 @@ impl<'a> Averaging<'a> {
         })
     }
 
-    /// Why so many samples do not separate the terms of the fit.
+    /// Why the samples of a plateau, this number of them, do not separate the terms of its fit.
     fn singular(&self, samples: usize) -> ReductionError {
         let (index, Window { span: window, shape }) = (self.index, *self.window);
         let (omega, interval) = (shape.omega, self.blocks.interval);

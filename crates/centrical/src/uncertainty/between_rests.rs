@@ -67,7 +67,7 @@ impl Calibration<'_> {
             return Ok(None);
         }
         let (rests, gain) = (self.data().observations(), self.gain()?);
-        let scatter = Columns::apart(gain, rests.len(), |n| rests[n].mean.normalize());
+        let scatter = Columns::along_forces(gain, rests);
         advance(progress, ())?;
         let redundancy = scatter.redundancy();
         advance(progress, ())?;

@@ -8,10 +8,8 @@
 use nalgebra::Vector3;
 
 use super::holm::holm;
-use super::rivals::Rivals;
-use super::rivals::Scatter;
-use super::rivals::Suspect;
 use super::rivals::columns::Columns;
+use super::rivals::{Rivals, Scatter, Suspect};
 use crate::fit::Calibration;
 use crate::model::{Experiment, FitError, Rival, SetPoint};
 
@@ -69,7 +67,7 @@ impl Calibration<'_> {
     /// # Errors
     /// As [`Calibration::patterns`].
     pub fn patterns_of(&self, trends: &[Trend]) -> Result<Vec<Pattern>, FitError> {
-        self.tested(trends, None)
+        self.tested(trends, None, &Scatter::of(self)?)
     }
 
     /// The patterns of what `rival`, one of `rivals`, does not explain.
@@ -77,14 +75,20 @@ impl Calibration<'_> {
     /// # Errors
     /// As [`Calibration::patterns`].
     pub fn patterns_beside(&self, rivals: &Rivals, rival: Rival) -> Result<Vec<Pattern>, FitError> {
-        self.tested(&trends(self.data().model().experiment()), rivals.get(rival))
+        self.tested(&trends(self.data().model().experiment()), rivals.get(rival), &rivals.scatter)
     }
 
-    fn tested(&self, trends: &[Trend], explained: Option<&Suspect>) -> Result<Vec<Pattern>, FitError> {
+    /// The patterns of what `explained` does not explain, against the scatter of all residuals.
+    fn tested(
+        &self,
+        trends: &[Trend],
+        explained: Option<&Suspect>,
+        scatter: &Scatter,
+    ) -> Result<Vec<Pattern>, FitError> {
         let (gain, experiment) = (self.gain()?, self.data().model().experiment());
         let (rank, statistic) = explained.map_or((0, 0.0), |rival| (rival.seen.rank(), rival.statistic()));
         let explained = explained.map(|rival| (&rival.columns, rival.seen.inverse()));
-        let scatter = Scatter::of(self)?.without(statistic, rank);
+        let scatter = scatter.without(statistic, rank);
         let observations = self.data().observations();
         let all: Vec<usize> = (0..observations.len()).collect();
         let of_mounting = self.by_mounting();

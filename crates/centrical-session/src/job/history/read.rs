@@ -80,7 +80,7 @@ fn restate(calibrations: &mut [Calibrated]) {
 /// Units of a list.
 const SHOWN: usize = 8;
 
-/// How many units there are, and which, in words: by model and serial number, either of which may be empty.
+/// The number of units, and the model and serial number of each; a model or a serial number may be empty.
 pub fn several_units(units: &[Vec<Calibrated>]) -> String {
     let named = |unit: &Vec<Calibrated>| format!("model {:?} serial {:?}", unit[0].unit_model, unit[0].unit_serial);
     let listed = units.iter().take(SHOWN).map(named).collect::<Vec<_>>().join(", ");

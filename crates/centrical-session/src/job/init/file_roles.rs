@@ -223,12 +223,16 @@ fn of_binary(path: PathBuf, columns: &[ColumnName]) -> FileColumns {
 
 /// Whether columns of a file hold what their rules ask for.
 fn opens(path: &Path, columns: &[(&ColumnName, Rule)]) -> bool {
+    open(path, columns).is_ok()
+}
+
+fn open(path: &Path, columns: &[(&ColumnName, Rule)]) -> Result<TableReader, centrical_table::Error> {
     let field = |(name, rule): &(&ColumnName, Rule)| Field {
         name: (*name).clone(),
         expected: "a number".to_owned(),
         rule: *rule,
     };
-    TableReader::open(path, Extent::Whole, &columns.iter().map(field).collect::<Vec<_>>(), "a table").is_ok()
+    TableReader::open(path, Extent::Whole, &columns.iter().map(field).collect::<Vec<_>>(), "a table")
 }
 
 /// A first column that rises from row to row, with others behind it, is the time by another name.
@@ -258,8 +262,7 @@ fn take_rates(file: &mut FileColumns) {
 fn rises(path: &Path, column: &ColumnName) -> bool {
     /// Noise rises through as many rows by chance once in 10^13 files.
     const ROWS: usize = 16;
-    let field = Field { name: column.clone(), expected: "a number".to_owned(), rule: Rule::Any };
-    let Ok(mut reader) = TableReader::open(path, Extent::Whole, &[field], "a table") else { return false };
+    let Ok(mut reader) = open(path, &[(column, Rule::Any)]) else { return false };
     let Ok(Some([rows, ..])) = reader.next_batch() else { return false };
     let first = rows[0].len().min(1000);
     first >= ROWS && rows[0][..first].windows(2).all(|pair| pair[1] > pair[0])

@@ -9,7 +9,7 @@ use std::{fs, io};
 use centrical::fit::{Follower, Progress};
 use centrical::plan::{Benefit, Criterion, NextPlateau, PlanError, ReadingRange};
 use centrical::reduction::MeasuredSpeed;
-use centrical::{FitError, MeasurementModel, Observation, SetPoint, Weight, linear};
+use centrical::{FitError, Group, MeasurementModel, Observation, SetPoint, Weight, linear};
 
 use nalgebra::Vector3;
 
@@ -352,12 +352,7 @@ impl<'a> Following<'a> {
 
 /// Refuses a group that the model does not have, and one that stands twice.
 fn check_groups(wanted: &[String], session: &Session, model: &MeasurementModel) -> Result<(), Error> {
-    let mut groups: Vec<&str> = Vec::new();
-    for parameter in model.parameters() {
-        if !groups.contains(&parameter.group.name()) {
-            groups.push(parameter.group.name());
-        }
-    }
+    let groups: Vec<&str> = model.parameters().groups().into_iter().map(Group::name).collect();
     let twice = wanted.iter().enumerate().find(|(n, group)| wanted[..*n].contains(group));
     if let Some((_, twice)) = twice {
         return Err(Error::content(

@@ -29,13 +29,7 @@ pub struct WatchProgress<'a> {
 impl WatchProgress<'_> {
     /// The groups of the unknowns in the order of results, beside `targets`: group, and value in its customary unit.
     pub fn groups(&self, targets: &[(String, f64)]) -> Vec<GroupProgress> {
-        let mut groups: Vec<Group> = Vec::new();
-        for parameter in self.model.parameters() {
-            if !groups.contains(&parameter.group) {
-                groups.push(parameter.group);
-            }
-        }
-        groups.into_iter().map(|group| self.group(group, targets)).collect()
+        self.model.parameters().groups().into_iter().map(|group| self.group(group, targets)).collect()
     }
 
     fn group(&self, group: Group, targets: &[(String, f64)]) -> GroupProgress {

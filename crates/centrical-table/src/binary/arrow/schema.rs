@@ -48,17 +48,13 @@ pub(super) fn find(file: &Path, schema: SchemaRef, fields: &[Field]) -> Result<V
     let big_endian = schema.endianness().map_err(failed)? == Endianness::Big;
     let listed = schema.fields().map_err(failed)?;
     let columns: Vec<FieldRef> = listed.into_iter().flatten().collect::<Result<_, _>>().map_err(failed)?;
-    let names: Vec<&str> = columns
-        .iter()
-        .map(|column| Ok(column.name()?.unwrap_or_default()))
-        .collect::<Result<_, _>>()
-        .map_err(failed)?;
+    let names = names(file, schema)?;
     let one = |field: &Field| {
         let wrong = |found: String, expected: &str| {
             Err(Error::content(file, Place::Column(field.name.to_string()), found, expected))
         };
         let mut places = match &field.name {
-            ColumnName::Name(name) => (0..columns.len()).filter(|i| names[*i] == name).collect(),
+            ColumnName::Name(name) => (0..columns.len()).filter(|i| names[*i] == *name).collect(),
             ColumnName::Number(number) => vec![number.wrapping_sub(1)],
             ColumnName::Row => Vec::new(),
         };
@@ -77,7 +73,7 @@ pub(super) fn find(file: &Path, schema: SchemaRef, fields: &[Field]) -> Result<V
             (node, buffer) = (node + nodes, buffer + buffers);
         }
         match numbers(&columns[place], field.rule, big_endian).map_err(failed)? {
-            Ok((scalar, stamps)) => Ok(ArrowColumn { name: names[place].to_owned(), node, buffer, scalar, stamps }),
+            Ok((scalar, stamps)) => Ok(ArrowColumn { name: names[place].clone(), node, buffer, scalar, stamps }),
             Err(other) => wrong(other, &field.expected),
         }
     };

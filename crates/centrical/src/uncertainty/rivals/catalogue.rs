@@ -12,7 +12,7 @@ use crate::progress::{OnProgress, advance};
 pub struct Rivals<'c> {
     pub(super) calibration: &'c Calibration<'c>,
     pub(super) list: Vec<Suspect>,
-    pub(super) scatter: Scatter,
+    pub(in crate::uncertainty) scatter: Scatter,
 }
 
 /// One rival with its columns.

@@ -3,6 +3,7 @@
 use nalgebra::{DMatrix, DVector, SymmetricEigen, Vector3};
 
 use crate::fit::Gain;
+use crate::model::Observation;
 
 /// A combination of columns is seen when more than this part of its length is redundant.
 const REDUNDANT: f64 = 1e-5;
@@ -53,13 +54,13 @@ impl Columns {
         Self { acting, square: z.tr_mul(&z), z, followed, lengths, along }
     }
 
-    /// A column for each of the `count` observations, which acts there alone: `derivative` gives the change of observation `n` by one unit of
-    /// its column [m/s^2].
-    pub fn apart(gain: &Gain, count: usize, derivative: impl Fn(usize) -> Vector3<f64>) -> Self {
+    /// A column for each rest, which acts there alone: a unit reading along its specific force.
+    pub fn along_forces(gain: &Gain, rests: &[Observation]) -> Self {
+        let count = rests.len();
         let (mut z, mut followed) = (DMatrix::zeros(3 * count, count), DMatrix::zeros(gain.basis().ncols(), count));
         let mut lengths = Vec::with_capacity(count);
         for (n, mut column) in followed.column_iter_mut().enumerate() {
-            let mut whitened = gain.whitener(n).apply(&derivative(n));
+            let mut whitened = gain.whitener(n).apply(&rests[n].mean.normalize());
             let length = whitened.norm();
             whitened.unscale_mut(if length > 0.0 { length } else { 1.0 });
             z.fixed_view_mut::<3, 1>(3 * n, n).copy_from(&whitened);

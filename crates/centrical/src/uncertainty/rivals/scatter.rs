@@ -28,8 +28,7 @@ impl Scatter {
         }
         // Known attitudes state an uncertainty that hides, across the forces, what a unit does: residuals there would make any scatter look
         // small.
-        let rests = data.observations();
-        let columns = Columns::apart(calibration.gain()?, rests.len(), |n| rests[n].mean.normalize());
+        let columns = Columns::along_forces(calibration.gain()?, data.observations());
         Ok(Self { along_forces: Some((columns.along.norm_squared(), columns.redundant_length())), ..all })
     }
 
