@@ -20,6 +20,9 @@ pub fn frequency(text: &str) -> Result<f64, String> {
 
 /// A largest error [m/s^2].
 pub fn largest_error(text: &str) -> Result<f64, String> {
+    if text.trim().parse::<f64>().is_ok() {
+        return Err(format!("found {text:?}, expected an acceleration with its unit, such as '300 ug'"));
+    }
     let error = quantity(text, Dimension::Acceleration).map_err(|wrong| wrong.to_string())?;
     if error > 0.0 { Ok(error) } else { Err(format!("found {text:?}, expected an acceleration above zero")) }
 }

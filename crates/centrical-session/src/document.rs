@@ -42,9 +42,10 @@ pub(crate) use self::history::FAMILY;
 pub(crate) use self::history::shown_readings;
 pub use self::history::{
     BatchSummary, BatchWithoutUnit, BeyondLimit, CHART_SCHEMA, CapabilitySummary, ChartReport, ChartSignal,
-    DeviatingSession, DueDate, LeftOutSession, OutlyingUnit, PastSession, ReadingHistory, STATION_HISTORY_SCHEMA,
-    SamenessSummary, StationHistoryReport, StationParameter, UNIT_HISTORY_SCHEMA, UNITS_HISTORY_SCHEMA, UnitFinding,
-    UnitFindingKind, UnitHistoryReport, UnitParameter, UnitsHistoryReport, UnitsParameter, UntestedStation,
+    DeviatingSession, DueDate, LeftOutSession, NotComparedParameter, OutlyingUnit, PastSession, ReadingHistory,
+    STATION_HISTORY_SCHEMA, SamenessSummary, StationHistoryReport, StationParameter, UNIT_HISTORY_SCHEMA,
+    UNITS_HISTORY_SCHEMA, UnitFinding, UnitFindingKind, UnitHistoryReport, UnitParameter, UnitsHistoryReport,
+    UnitsParameter, UntestedStation,
 };
 pub use self::history_list::{Doubt, DoubtKind, HistoryLine, HistoryList};
 pub(crate) use self::json::line as json_line;

@@ -61,9 +61,9 @@ pub use document::{
 };
 pub use document::{
     BatchSummary, BatchWithoutUnit, BeyondLimit, CapabilitySummary, ChartReport, ChartSignal, DeviatingSession,
-    DueDate, FailedSession, LeftOutSession, OutlyingUnit, PastSession, ReadingHistory, SamenessSummary,
-    StationHistoryReport, StationParameter, UnitFinding, UnitFindingKind, UnitHistoryReport, UnitParameter,
-    UnitsHistoryReport, UnitsParameter, UntestedStation,
+    DueDate, FailedSession, LeftOutSession, NotComparedParameter, OutlyingUnit, PastSession, ReadingHistory,
+    SamenessSummary, StationHistoryReport, StationParameter, UnitFinding, UnitFindingKind, UnitHistoryReport,
+    UnitParameter, UnitsHistoryReport, UnitsParameter, UntestedStation,
 };
 pub use document::{
     GroupProgress, LiveBenefit, LiveCause, LiveLost, LivePlateau, LiveRecord, LiveReport, LiveSpeed, LiveStatus,

@@ -2,6 +2,7 @@
 //!
 //! - [`Between`]: the component of variance between sessions, beside the uncertainty that each session states.
 //! - [`Series::evolution`]: level, slope, forecast, due date.
+//! - [`Series::step`]: a repair in place of a drift.
 //! - [`sameness`]: all parameters together, with their full covariances.
 //! - [`unit_trends`], [`distances`], [`capability`], [`batch_test`]: units beside each other.
 //! - [`station_test`]: a machine over its sessions.
@@ -20,6 +21,7 @@ mod outlying;
 mod quantiles;
 mod series;
 mod station;
+mod step;
 mod succession;
 mod together;
 mod units;

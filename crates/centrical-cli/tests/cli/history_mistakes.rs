@@ -535,8 +535,66 @@ fn a_calibration_with_a_shorter_model_is_left_out() {
             }
         });
     }
+    results.add("other", "0002", "2012-01-01", |_| {});
+    let units = results.document(&["units", "."]);
+    // Units are compared by what all determine, and what the longer model alone has is named.
+    assert!(units["left_out"].is_null(), "{units}");
+    assert_eq!(units["not_compared"][0], json!({ "name": "K_1[f1*|f1|]", "sessions": 8 }));
+    fs::remove_dir_all(results.path().join("other")).unwrap();
     let unit = results.document(&["unit", "."]);
     assert_eq!(unit["sessions"].as_array().unwrap().len(), 8);
     assert_eq!(unit["left_out"][0]["date"], "2016-01-01");
     assert!(unit["incomplete"].is_null() && !unit["left_out"][0]["lacks"].as_array().unwrap().is_empty());
+}
+
+/// A limit without a unit would be one in m/s^2.
+#[test]
+fn a_limit_has_a_unit() {
+    let results = Results::new();
+    results.add("a", "0001", "2023-01-01", |_| {});
+    results.add("b", "0001", "2024-01-01", |_| {});
+    for arguments in [&["unit", ".", "--limit", "300"][..], &["page", ".", "--out", "pages", "--limit", "300"]] {
+        let (code, _, message) = results.run(arguments);
+        assert!(code == 2 && message.contains("found \"300\", expected an acceleration with its unit"), "{message}");
+    }
+}
+
+/// A repair is a step between two sessions, not a drift; a session with an objection counts, which is said.
+#[test]
+fn a_repair_is_named_as_a_step() {
+    let results = Results::new();
+    for n in 0..6 {
+        let date = format!("{}-01-01", 2019 + n);
+        let bias = |result: &Value| {
+            result["parameters"].as_array().unwrap().iter().find(|p| p["name"] == "df_1").unwrap().clone()
+        };
+        results.add(&n.to_string(), "0001", &date, |result| {
+            let of = |key: &str| bias(result)[key].as_f64().unwrap();
+            let (value, u) = (of("value"), of("standard_uncertainty"));
+            let noise = [0.4, -0.8, 0.9, -0.5, 0.7, -0.2][n];
+            set(result, "df_1", value + u * (noise + if n < 4 { 0.0 } else { 25.0 }));
+            if n == 2 {
+                result["validity"]["probability"] = json!(1e-9);
+                result["fit"]["chi_squared"] = json!(1e4);
+            }
+        });
+    }
+    let (_, text, _) = results.run(&["unit", "."]);
+    assert!(text.contains("STEP") && text.contains("between 2022-01-01 and 2023-01-01"), "{text}");
+    assert!(text.contains("1 calibration before the last with an objection"), "{text}");
+    let document = results.document(&["unit", "."]);
+    let steps = document["parameters"].as_array().unwrap().iter().filter(|p| !p["step"].is_null());
+    let steps: Vec<(&str, &Value)> = steps.map(|p| (p["name"].as_str().unwrap(), &p["step"])).collect();
+    assert_eq!(steps, [("df_1", &json!(["2022-01-01", "2023-01-01"]))]);
+}
+
+/// A linear fit has another budget than its covariance: the row of a store holds what agrees, and the store stays readable.
+#[test]
+fn a_store_reads_the_result_of_a_linear_fit() {
+    let results = Results::new();
+    let mut command = centrical();
+    command.arg("calibrate").arg(example()).args(["--linear", "--out", "linear", "--store", "store", "-q"]);
+    assert_eq!(command.current_dir(results.path()).output().unwrap().status.code(), Some(1));
+    let (code, _, message) = results.run(&["list", "store", "--check"]);
+    assert_eq!(code, 0, "{message}");
 }

@@ -16,7 +16,7 @@ impl CalibrationResult {
         let of_parameters =
             |text: fn(&ParameterEstimate) -> String| self.parameters.iter().map(text).collect::<Vec<_>>();
         let raw_output = self.raw_output();
-        let (combined, covariance) = (self.combined(), self.packed_covariance());
+        let covariance = self.packed_covariance();
         let (shared, priors) = (self.shared_influences(), self.row_priors());
         Row {
             key: sha256(bytes),
@@ -43,7 +43,7 @@ impl CalibrationResult {
             units: of_parameters(|p| p.unit.clone()),
             groups: of_parameters(|p| p.group.name().to_owned()),
             values: self.parameters.iter().map(|p| p.value.unwrap_or(f64::NAN)).collect(),
-            standard_uncertainties: combined,
+            standard_uncertainties: self.standard_uncertainties(),
             covariance,
             output_unit: raw_output.map_or_else(String::new, |output| output.unit.clone()),
             output_scale: raw_output.map_or_else(Vec::new, |output| output.scale.to_vec()),
@@ -57,10 +57,11 @@ impl CalibrationResult {
         }
     }
 
-    fn combined(&self) -> Vec<f64> {
-        let combined = self.budget.as_ref().map(|budget| &budget.combined);
+    /// By the covariance, which the row states beside them. A linear fit has another budget: that of the estimate which it finds.
+    fn standard_uncertainties(&self) -> Vec<f64> {
         let own = |(n, p): (usize, &ParameterEstimate)| {
-            combined.and_then(|list| list.get(n).copied()).unwrap_or(p.standard_uncertainty).unwrap_or(f64::NAN)
+            let variance = self.covariance.get(n).and_then(|row| *row.get(n)?);
+            variance.map(f64::sqrt).or(p.standard_uncertainty).unwrap_or(f64::NAN)
         };
         self.parameters.iter().enumerate().map(own).collect()
     }

@@ -14,6 +14,6 @@ pub use self::unit::{
     UnitHistoryReport, UnitParameter,
 };
 pub use self::units::{
-    BatchSummary, BatchWithoutUnit, BeyondLimit, CapabilitySummary, OutlyingUnit, UNITS_HISTORY_SCHEMA, UnitFinding,
-    UnitFindingKind, UnitsHistoryReport, UnitsParameter, UntestedStation,
+    BatchSummary, BatchWithoutUnit, BeyondLimit, CapabilitySummary, NotComparedParameter, OutlyingUnit,
+    UNITS_HISTORY_SCHEMA, UnitFinding, UnitFindingKind, UnitsHistoryReport, UnitsParameter, UntestedStation,
 };

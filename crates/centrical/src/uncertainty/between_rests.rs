@@ -3,20 +3,24 @@
 //! Noise that is slower than a rest does not show in it, nor does a bias that warms up. Both show in the residuals of many rests, which
 //! then have the covariance
 //!
-//! `E + v B B^T + w D D^T`.
+//! `E + v B K B^T + w D D^T`, `K_ij = (u_i . u_j) exp(-|i - j| / l)`.
 //!
-//! A column of `B` is a unit reading along the specific force of one rest. A column of `D` is the bias of one newtonometer that changes by
-//! one unit from the first rest to the last. All are whitened by the noise within rests, and freed of what the unknowns
-//! of the fit follow. The variances `v` and `w` are posterior means: absence of either is as likely beforehand as all its strengths
-//! together, and no strength is preferred (as for the noise within rests, `reduction/colour/posterior.rs`). So the uncertainties
-//! include what the residuals cannot exclude, and grow little where an effect is absent.
+//! A column of `B` is a unit reading along the specific force `u_i` of one rest, and `K` the correlation of these where the readings of each
+//! newtonometer are correlated over `l` rests: flicker noise, and the arcs of slow rotation, which follow one another without a pause. A column of
+//! `D` is the bias of one newtonometer that changes by one unit from the first rest to the last. All are whitened by the noise within rests, and
+//! freed of what the unknowns of the fit follow. The variances `v` and `w` are posterior means over all strengths and lengths: absence of either is as
+//! likely beforehand as all its strengths together, and no strength or length is preferred (as for the noise within rests,
+//! `reduction/colour/posterior.rs`). So the uncertainties include what the residuals cannot exclude, and grow little where an effect is absent.
+//!
+//! A fit takes scatter as independent. That which is correlated moves the coefficients farther, and counts as the independent one that would move
+//! them as far. A bias is its mean over the rests, so that the mean of the scatter moves none.
 
-use nalgebra::{DMatrix, DVector, Matrix3, SymmetricEigen};
+use nalgebra::{DMatrix, DVector, Matrix3, SymmetricEigen, Vector3};
 
 use super::rivals::Rivals;
 use super::rivals::columns::Columns;
 use crate::fit::Calibration;
-use crate::model::{Course, Extension, FitError, Rival, TypeB};
+use crate::model::{self, Extension, FitError, Observation, Rival, TypeB};
 use crate::progress::{OnProgress, advance};
 
 /// Strengths per decade, over the mean variance of a rest, and from where on. Below the first no standard uncertainty changes by more
@@ -25,16 +29,19 @@ const PER_DECADE: usize = 3;
 const SMALLEST: f64 = 1e-2;
 const DECADES: usize = 6;
 
+/// Correlation lengths of scatter [rests]: none, and from two rests to the course of a drift.
+const LENGTHS: [f64; 4] = [0.0, 2.0, 6.0, 18.0];
+
 /// A variance with this number of degrees of freedom or fewer has no posterior mean: its factor is `nu / (nu - 2)`.
 const FEWEST: f64 = 2.0;
 
 /// The drift of the biases.
-const DRIFT: Rival = Rival::Effect(Extension::Disturbance(Course::Time));
+const DRIFT: Rival = Rival::Effect(Extension::Disturbance(model::Course::Time));
 
 /// Standard deviations of what differs from rest to rest.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BetweenRests {
-    /// Scatter of the reading of a rest beside its noise [m/s^2].
+    /// Scatter of the reading of a rest beside its noise, as large as independent scatter that would do as much [m/s^2].
     pub scatter: f64,
     /// Change of each bias from the first rest to the last [m/s^2]; zero where the model has or states one.
     pub drift: f64,
@@ -79,11 +86,58 @@ impl Calibration<'_> {
         let unit = (variances.sum::<f64>() / rests.len() as f64).sqrt();
         let rivals = Rivals::of(self, progress)?;
         let drift = rivals.get(DRIFT).map(|drift| &drift.columns);
-        let residuals = Residuals::of(&scatter, &redundancy, drift, unit);
-        advance(progress, ())?;
-        let (scatter, drift) = residuals.posterior_mean();
+        let moved = self.moved(&scatter)?;
+        let mut courses = Vec::with_capacity(LENGTHS.len());
+        for length in LENGTHS {
+            let correlation = correlation(rests.len(), length);
+            let about_mean = if length > 0.0 { about_mean(&correlation) } else { correlation.clone() };
+            let harm =
+                (&moved * along_forces(rests, &about_mean)).dot(&moved) / moved.norm_squared().max(f64::MIN_POSITIVE);
+            let residuals = Residuals::of(&scatter, &redundancy, along_forces(rests, &correlation), drift, unit);
+            courses.push(Course { residuals: residuals.ok_or(FitError::Overflow)?, harm });
+            advance(progress, ())?;
+        }
+        let (scatter, drift) = posterior_mean(&courses);
         Ok(Some(BetweenRests { scatter: unit * scatter.sqrt(), drift: unit * drift.sqrt() }))
     }
+
+    /// How far each rest moves the coefficients of the unit, in their standard uncertainties, by a unit reading along its force.
+    fn moved(&self, scatter: &Columns) -> Result<DMatrix<f64>, FitError> {
+        let (fit, parameters) = (self.fit(), self.data().model().parameters());
+        let shifts = self.gain()?.shifts(&scatter.followed);
+        let u = |j: &usize| fit.standard_uncertainty(*j).filter(|u| parameters[*j].is_of_instrument() && *u > 0.0);
+        let rows: Vec<(usize, f64)> = (0..parameters.len()).filter_map(|j| Some((j, u(&j)?))).collect();
+        Ok(DMatrix::from_fn(rows.len(), scatter.lengths.len(), |i, n| {
+            let (j, u) = rows[i];
+            shifts[(j, n)] * scatter.lengths[n] / u
+        }))
+    }
+}
+
+/// Covariance of the readings along the forces when those of each newtonometer have the covariance `of_rests`.
+fn along_forces(rests: &[Observation], of_rests: &DMatrix<f64>) -> DMatrix<f64> {
+    let forces: Vec<Vector3<f64>> = rests.iter().map(|rest| rest.mean.normalize()).collect();
+    DMatrix::from_fn(rests.len(), rests.len(), |i, j| {
+        of_rests[(i, j)] * if i == j { 1.0 } else { forces[i].dot(&forces[j]) }
+    })
+}
+
+/// Correlation of `count` rests over `length` of them.
+fn correlation(count: usize, length: f64) -> DMatrix<f64> {
+    DMatrix::from_fn(count, count, |i, j| if i == j { 1.0 } else { (-(i.abs_diff(j) as f64) / length).exp() })
+}
+
+/// The covariance of deviations from the mean of all rests. A bias is that mean.
+fn about_mean(correlation: &DMatrix<f64>) -> DMatrix<f64> {
+    let (of_row, all) = (correlation.row_mean(), correlation.mean());
+    DMatrix::from_fn(correlation.nrows(), correlation.ncols(), |i, j| correlation[(i, j)] - of_row[i] - of_row[j] + all)
+}
+
+/// Scatter of one correlation length.
+struct Course {
+    residuals: Residuals,
+    /// Variance of independent scatter that moves the coefficients as far, over its own.
+    harm: f64,
 }
 
 /// The residuals as they answer to both effects, in the principal directions of the scatter.
@@ -98,11 +152,18 @@ struct Residuals {
 }
 
 impl Residuals {
-    /// Of effects of the size `unit`; `redundancy` is that of the scatter.
-    fn of(scatter: &Columns, redundancy: &DMatrix<f64>, drift: Option<&Columns>, unit: f64) -> Self {
+    /// Of effects of the size `unit`; `redundancy` is that of the scatter, and `correlation` that of its readings; `None` where that is
+    /// not positive definite, as of numbers that are not finite.
+    fn of(
+        scatter: &Columns,
+        redundancy: &DMatrix<f64>,
+        correlation: DMatrix<f64>,
+        drift: Option<&Columns>,
+        unit: f64,
+    ) -> Option<Self> {
         let sizes = |columns: &Columns| DMatrix::from_diagonal(&DVector::from_column_slice(&columns.lengths)) * unit;
-        let of_scatter = sizes(scatter);
-        let eigen = SymmetricEigen::new(&of_scatter * redundancy * &of_scatter);
+        let of_scatter = correlation.cholesky()?.l().transpose() * sizes(scatter);
+        let eigen = SymmetricEigen::new(&of_scatter * redundancy * of_scatter.transpose());
         let turned = eigen.eigenvectors.transpose() * of_scatter;
         let count = scatter.lengths.len();
         let (across, of_drift) = match drift {
@@ -115,28 +176,8 @@ impl Residuals {
         };
         // Rounding leaves eigenvalues of zero a sign.
         let values = eigen.eigenvalues.map(|value| value.max(0.0));
-        Self { scatter: (values, turned * &scatter.along), across, drift: of_drift, is_drift_asked: drift.is_some() }
-    }
-
-    /// Posterior means of both variances, in units of that of a rest.
-    fn posterior_mean(&self) -> (f64, f64) {
-        let strengths = (0..=PER_DECADE * DECADES).map(|k| SMALLEST * 10_f64.powf(k as f64 / PER_DECADE as f64));
-        let slab: Vec<f64> = strengths.collect();
-        // Each strength has its share of what absence has.
-        let prior = |strength: f64| if strength > 0.0 { 1.0 / slab.len() as f64 } else { 1.0 };
-        let all = || std::iter::once(0.0).chain(slab.iter().copied());
-        let is_asked = |w: &f64| *w == 0.0 || self.is_drift_asked;
-        let points: Vec<(f64, f64)> = all().flat_map(|v| all().filter(is_asked).map(move |w| (v, w))).collect();
-        let logarithms: Vec<f64> = points.iter().map(|&(v, w)| self.log_likelihood(v, w)).collect();
-        let highest = logarithms.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let (mut sum, mut scatter, mut drift) = (0.0, 0.0, 0.0);
-        for ((v, w), logarithm) in points.into_iter().zip(logarithms) {
-            let weight = prior(v) * prior(w) * (logarithm - highest).exp();
-            sum += weight;
-            scatter += weight * v;
-            drift += weight * w;
-        }
-        (scatter / sum, drift / sum)
+        let scatter = (values, turned * &scatter.along);
+        Some(Self { scatter, across, drift: of_drift, is_drift_asked: drift.is_some() })
     }
 
     /// Logarithm of the likelihood of the residuals, less that without either: by `(E + v B B^T)^-1 = E - v B (E + v B^T B)^-1 B^T`
@@ -157,4 +198,31 @@ impl Residuals {
         let squares = along.dot(&explained) + w * components.component_div(&of_drift).dot(&components);
         0.5 * (squares - of_scatter - of_drift.iter().map(|value| value.ln()).sum::<f64>())
     }
+}
+
+/// Posterior means of both variances, in units of that of a rest.
+fn posterior_mean(courses: &[Course]) -> (f64, f64) {
+    let strengths = (0..=PER_DECADE * DECADES).map(|k| SMALLEST * 10_f64.powf(k as f64 / PER_DECADE as f64));
+    let slab: Vec<f64> = strengths.collect();
+    let none = &courses[0].residuals;
+    // Each strength has its share of what absence has, and of that of a scatter each length.
+    let share = 1.0 / slab.len() as f64;
+    let drifts = std::iter::once((0.0, 1.0)).chain(slab.iter().map(|w| (*w, share)));
+    let mut points = Vec::new();
+    for (w, prior) in drifts.filter(|(w, _)| *w == 0.0 || none.is_drift_asked) {
+        points.push((0.0, w, prior, none.log_likelihood(0.0, w)));
+        let prior = prior * share / courses.len() as f64;
+        for (Course { residuals, harm }, v) in courses.iter().flat_map(|course| slab.iter().map(move |v| (course, v))) {
+            points.push((v * harm, w, prior, residuals.log_likelihood(*v, w)));
+        }
+    }
+    let highest = points.iter().map(|(.., logarithm)| *logarithm).fold(f64::NEG_INFINITY, f64::max);
+    let (mut sum, mut scatter, mut drift) = (0.0, 0.0, 0.0);
+    for (v, w, prior, logarithm) in points {
+        let weight = prior * (logarithm - highest).exp();
+        sum += weight;
+        scatter += weight * v;
+        drift += weight * w;
+    }
+    (scatter / sum, drift / sum)
 }

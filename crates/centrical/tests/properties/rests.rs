@@ -656,7 +656,7 @@ fn ten_thousand_runs_of_tumbles() {
 
 /// Scatter and drift between rests are the posterior means under the restricted likelihood of the readings (Patterson and Thompson 1971).
 /// It is computed here from whole matrices, `-2 ln L = ln det V + ln det A^T V^-1 A + r^T (V^-1 - V^-1 A (A^T V^-1 A)^-1 A^T V^-1) r`.
-/// One unit is steady, the other warms up.
+/// Scatter that is correlated counts as the independent one that moves the coefficients as far. One unit is steady, the other warms up.
 #[test]
 fn what_differs_between_rests_is_what_the_restricted_likelihood_says() {
     let few = Making { rests: 14, lasting: [2.0, 3.0], ..ON_A_TABLE };
@@ -687,8 +687,31 @@ fn what_differs_between_rests_is_what_the_restricted_likelihood_says() {
             drift.fixed_view_mut::<3, 3>(3 * k, 0).copy_from(&(Matrix3::identity() * order));
             variance += 1.0 / up.dot(&(covariance.try_inverse().unwrap() * up)) / n as f64;
         }
-        let logarithm = |v: f64, w: f64| {
-            let covariance = &noise + &along * along.transpose() * v + &drift * drift.transpose() * w;
+        let forces: Vec<Vector3<f64>> = observations.iter().map(|rest| rest.mean.normalize()).collect();
+        // Correlated over a number of rests, or not at all; and the same less its mean over the rests.
+        let correlated = |length: f64, is_about_mean: bool| {
+            let decay = |i: usize, j: usize| if i == j { 1.0 } else { (-(i.abs_diff(j) as f64) / length).exp() };
+            let decay = DMatrix::from_fn(n, n, decay);
+            let less_mean = DMatrix::identity(n, n) - DMatrix::from_element(n, n, 1.0 / n as f64);
+            let decay = if is_about_mean { &less_mean * decay * &less_mean } else { decay };
+            let between = DMatrix::from_fn(n, n, |i, j| decay[(i, j)] * forces[i].dot(&forces[j]));
+            &along * between * along.transpose()
+        };
+        let weights = noise.clone().try_inverse().unwrap();
+        let information = (design.tr_mul(&weights) * &design).try_inverse().unwrap();
+        // By the errors of the nine coefficients over their variances.
+        let moved = |scatter: &DMatrix<f64>| -> f64 {
+            let estimate = &information * design.tr_mul(&weights);
+            let errors = &estimate * scatter * estimate.transpose();
+            let instrument = (0..x.len()).filter(|&j| model.parameters()[j].is_of_instrument());
+            instrument.map(|j| errors[(j, j)] / information[(j, j)]).sum()
+        };
+        let independent = moved(&correlated(0.0, false));
+        let lengths = [0.0, 2.0, 6.0, 18.0];
+        let harms = lengths.map(|length| moved(&correlated(length, length > 0.0)) / independent);
+        let scatters = lengths.map(|length| correlated(length, false));
+        let logarithm = |scatter: usize, v: f64, w: f64| {
+            let covariance = &noise + &scatters[scatter] * v + &drift * drift.transpose() * w;
             let factor = covariance.cholesky().unwrap();
             let information = design.tr_mul(&factor.solve(&design)).cholesky().unwrap();
             let weighed = factor.solve(&residuals);
@@ -700,13 +723,16 @@ fn what_differs_between_rests_is_what_the_restricted_likelihood_says() {
         let strengths: Vec<f64> =
             std::iter::once(0.0).chain((0..19).map(|k| 10_f64.powf(f64::from(k) / 3.0 - 2.0))).collect();
         let prior = |strength: f64| if strength > 0.0 { 1.0 / 19.0 } else { 1.0 };
-        let none = logarithm(0.0, 0.0);
+        let none = logarithm(0, 0.0, 0.0);
         let (mut sum, mut means) = (0.0, [0.0; 2]);
         for (v, w) in strengths.iter().flat_map(|v| strengths.iter().map(move |w| (*v, *w))) {
-            let weight = prior(v) * prior(w) * (logarithm(v * variance, w * variance) - none).exp();
-            sum += weight;
-            means[0] += weight * v * variance;
-            means[1] += weight * w * variance;
+            for (course, harm) in harms.iter().enumerate() {
+                let chance = (logarithm(course, v * variance, w * variance) - none).exp();
+                let weight = prior(v) * prior(w) * chance / lengths.len() as f64;
+                sum += weight;
+                means[0] += weight * v * harm * variance;
+                means[1] += weight * w * variance;
+            }
         }
         for (found, mean) in [found.scatter, found.drift].into_iter().zip(means) {
             let expected = (mean / sum).sqrt();

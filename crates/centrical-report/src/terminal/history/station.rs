@@ -56,7 +56,14 @@ pub fn station_history_text(report: &StationHistoryReport) -> Screen {
     screen.gap();
     let name = if report.station.is_empty() { "without a name" } else { &report.station };
     let counts = format!("{} of {}", counted(report.sessions, "session"), counted(report.units, "unit"));
-    screen.head("STATION", &format!("{name}: {counts}, {} to {}", report.first, report.last));
+    screen.head(
+        "STATION",
+        &format!(
+            "{name}: {counts}, {} to {}; mean ± scatter; scatter over the stated uncertainties; slope; largest change that lasts, and the last \
+             session before it; probability of the most unlikely of four tests, a finding below 5 % over all parameters together",
+            report.first, report.last
+        ),
+    );
     let columns = [
         ("", Align::Left),
         ("unit", Align::Left),

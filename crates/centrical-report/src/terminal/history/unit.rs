@@ -1,7 +1,9 @@
 //! One unit over its calibrations.
 
+use std::collections::BTreeMap;
+
 use centrical_session::{
-    DueDate, LeftOutSession, MICRO_G, ReadingHistory, STANDARD_GRAVITY as G, UnitHistoryReport, UnitParameter,
+    Date, DueDate, LeftOutSession, MICRO_G, ReadingHistory, STANDARD_GRAVITY as G, UnitHistoryReport, UnitParameter,
     customary, unit_name,
 };
 
@@ -114,12 +116,36 @@ fn verdict(screen: &mut Screen, report: &UnitHistoryReport) {
         );
         screen.marked(Emphasis::Warning, "NOT IN LAST", &words);
     }
+    let refused = report.sessions.iter().rev().skip(1).filter(|session| !session.acceptable).count();
+    if refused > 0 {
+        let words = format!("{} before the last with an objection, not left out", counted(refused, "calibration"));
+        screen.marked(Emphasis::Warning, "NOT ACCEPTABLE", &words);
+    }
+    steps(screen, report);
     sameness(screen, report);
     twice(screen, report);
     if report.sessions.len() < 3 {
         screen.marked(Emphasis::Warning, "FEW", "two calibrations show no trend beside the scatter between sessions");
     } else if report.is_unexplained() {
         screen.marked(Emphasis::Warning, "FEW", "the calibrations are too few to tell a drift from scatter");
+    }
+}
+
+/// Steps between two sessions, with the parameters that have them.
+fn steps(screen: &mut Screen, report: &UnitHistoryReport) {
+    let mut by_days: BTreeMap<[Date; 2], Vec<String>> = BTreeMap::new();
+    for p in &report.parameters {
+        if let Some(days) = p.step {
+            by_days.entry(days).or_default().push(p.name.clone());
+        }
+    }
+    for ([before, after], names) in by_days {
+        let words = format!(
+            "between {before} and {after}, in {}: it explains the values better than a line in time does, as a repair or another unit of this \
+             serial number would; forecasts and due dates continue the line",
+            short_list(&names)
+        );
+        screen.marked(Emphasis::Warning, "STEP", &words);
     }
 }
 
@@ -309,7 +335,7 @@ fn readings(screen: &mut Screen, report: &UnitHistoryReport) {
         (&expanded, Align::Right),
         ("due", Align::Left),
     ];
-    let mut table = Table::new(1, columns);
+    let mut table = Table::new(2, columns);
     for r in report.shown_readings() {
         table.row(reading(r));
     }

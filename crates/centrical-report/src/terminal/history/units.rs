@@ -75,6 +75,11 @@ fn calibrations(screen: &mut Screen, report: &UnitsHistoryReport) {
         let words = format!("and {} more", counted(report.left_out.len() - SHOWN, "calibration"));
         screen.marked(Emphasis::Warning, "INCOMPLETE", &words);
     }
+    if !report.not_compared.is_empty() {
+        let names: Vec<String> = report.not_compared.iter().map(|p| format!("{} ({})", p.name, p.sessions)).collect();
+        let words = format!("some calibrations alone determine {}", first_of(&names, SHOWN));
+        screen.marked(Emphasis::Warning, "NOT COMPARED", &words);
+    }
     if report.not_acceptable > 0 {
         let words =
             format!("{} with an objection count as the others do", counted(report.not_acceptable, "calibration"));
@@ -98,8 +103,11 @@ fn outlying(screen: &mut Screen, report: &UnitsHistoryReport) {
 /// Units that drift or scatter more than the others.
 fn findings(screen: &mut Screen, report: &UnitsHistoryReport) {
     for finding in &report.findings {
+        let step = finding.step.map_or_else(String::new, |[before, after]| {
+            format!("; a step between {before} and {after} explains it better than a line")
+        });
         let words = format!(
-            "serial {}, {}: family-wise probability {}",
+            "serial {}, {}: family-wise probability {}{step}",
             finding.unit_serial,
             finding.parameter,
             chance(finding.probability)

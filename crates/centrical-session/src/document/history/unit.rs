@@ -163,6 +163,9 @@ pub struct UnitParameter {
     pub slope_probability: Option<f64>,
     /// Whether that is beyond 5 %, all parameters together (Holm).
     pub drifts: bool,
+    /// Where it drifts or scatters: the days of two sessions between which a step explains the values better than a line in time.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub step: Option<[Date; 2]>,
     /// Interval of the true value after a switch-on on the day of the forecasts.
     pub forecast: Option<[f64; 2]>,
     /// Last less previous calibration that determines it over the expanded uncertainty (k = 2), without what both share.

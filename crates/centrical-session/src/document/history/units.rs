@@ -7,6 +7,7 @@ use super::unit::LeftOutSession;
 use crate::document::json;
 use crate::document::result::Program;
 use crate::error::Error;
+use crate::quantity::Date;
 
 /// Name of the schema's present version.
 pub const UNITS_HISTORY_SCHEMA: &str = "centrical-units-history/1";
@@ -29,6 +30,9 @@ pub struct UnitsHistoryReport {
     /// Calibrations that do not determine the same parameters.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub left_out: Vec<LeftOutSession>,
+    /// Parameters that some of the calibrations determine and others do not: units are not compared by them.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub not_compared: Vec<NotComparedParameter>,
     /// Whether every station has enough units to say which is outlying: ten.
     pub is_tested: bool,
     /// The stations that have fewer, with their units.
@@ -55,6 +59,15 @@ pub struct UnitsHistoryReport {
     pub without_unit: Vec<BatchWithoutUnit>,
     /// The parameters that all calibrations compared determine.
     pub parameters: Vec<UnitsParameter>,
+}
+
+/// A parameter by which units are not compared.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct NotComparedParameter {
+    /// Name.
+    pub name: String,
+    /// Number of the calibrations that determine it.
+    pub sessions: usize,
 }
 
 /// A station with too few units to say which of them is outlying.
@@ -84,7 +97,7 @@ pub struct BatchWithoutUnit {
     pub near: Vec<String>,
 }
 
-/// A unit that is not like the others: family-wise 5 %.
+/// A unit that is not like the others: family-wise 5 %, together with all other findings.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct OutlyingUnit {
     /// Serial number.
@@ -107,7 +120,7 @@ pub enum UnitFindingKind {
     Scatters,
 }
 
-/// A unit that drifts or scatters in one parameter: family-wise 5 % over all units and parameters (Holm).
+/// A unit that drifts or scatters in one parameter: family-wise over all units and parameters (Holm), 5 % together with all other findings.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct UnitFinding {
     /// Which of the two.
@@ -122,6 +135,9 @@ pub struct UnitFinding {
     pub slope_uncertainty: f64,
     /// Scatter about the line over that of the other units, in squares.
     pub variance_ratio: f64,
+    /// The days of two sessions between which a step explains the values better than a line in time.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub step: Option<[Date; 2]>,
     /// Family-wise probability.
     pub probability: f64,
 }
@@ -153,7 +169,7 @@ pub struct UnitsParameter {
     pub batches: Vec<BatchSummary>,
     /// Probability of so large a difference of the batches (Welch), where two or more were given.
     pub batch_probability: Option<f64>,
-    /// Whether that is beyond 5 %, all parameters together (Holm).
+    /// Whether that is beyond chance, all parameters together (Holm): 5 % together with all other findings.
     pub batches_differ: bool,
 }
 

@@ -92,6 +92,7 @@ pub fn unit_history(
     let slopes: Vec<f64> = parameters.iter().map(|p| p.slope_probability.unwrap_or(1.0)).collect();
     for (parameter, chance) in parameters.iter_mut().zip(family_wise(&slopes)) {
         parameter.drifts = parameter.slope_probability.is_some() && chance < FAMILY;
+        parameter.step = parameter.step.filter(|_| parameter.drifts || parameter.scatters);
     }
     let readings = job.readings();
     // Of some readings alone a day would pass for that of all.
@@ -232,6 +233,12 @@ impl Job<'_> {
         self.own.iter().any(|c| c.place(name).is_some_and(|place| c.rests_on_priors(place)))
     }
 
+    /// The days of the sessions before and after a step, with `place` sessions before it.
+    fn days_of_step(&self, name: &str, place: usize) -> Option<[Date; 2]> {
+        let mut days = self.own.iter().filter(|c| c.place(name).is_some()).map(|c| c.date).skip(place - 1);
+        Some([days.next()?, days.next()?])
+    }
+
     fn between(&self, all: &[Series]) -> Option<Between> {
         Between::of(all, self.curve, self.request.coverage)
     }
@@ -273,6 +280,7 @@ impl Job<'_> {
             slope_interval: slope.as_ref().map(|slope| slope.interval(self.request.coverage)),
             slope_probability: slope.as_ref().map(Estimated::probability),
             drifts: false,
+            step: own.step().and_then(|place| self.days_of_step(name, place)),
             forecast: evolution.map(|evolution| evolution.forecast(self.ahead).interval(self.request.coverage)),
             e_n_previous: e_n(count - 2),
             e_n_first: e_n(0),

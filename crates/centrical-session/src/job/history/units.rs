@@ -15,8 +15,8 @@ use super::comparable::ComparedUnits;
 use super::limits::ParameterLimits;
 use super::unit::{UnitHistoryRequest, common_names};
 use crate::document::{
-    BatchSummary, BatchWithoutUnit, BeyondLimit, CapabilitySummary, OutlyingUnit, Program, UNITS_HISTORY_SCHEMA,
-    UnitFinding, UnitFindingKind, UnitsHistoryReport, UnitsParameter, UntestedStation,
+    BatchSummary, BatchWithoutUnit, BeyondLimit, CapabilitySummary, NotComparedParameter, OutlyingUnit, Program,
+    UNITS_HISTORY_SCHEMA, UnitFinding, UnitFindingKind, UnitsHistoryReport, UnitsParameter, UntestedStation,
 };
 
 /// What is asked of units.
@@ -28,7 +28,7 @@ pub struct UnitsHistoryRequest {
     pub batches: BTreeMap<String, String>,
 }
 
-/// Family-wise level: of batches that differ, and of units that are outlying together with those that drift or scatter, which share it.
+/// Family-wise level, which the kinds of findings share: batches that differ, units that are outlying, and those that drift or scatter.
 const FAMILY: f64 = 0.05;
 
 /// Seed of the laws that are drawn.
@@ -52,19 +52,21 @@ pub fn units_history(compared: &ComparedUnits, request: &UnitsHistoryRequest) ->
         parameters.extend(parameter(&lasts, name, &means, batches, request));
         beyond_limits.extend(beyond_limit(&lasts, name, &means, &request.limits));
     }
-    let batches: Vec<f64> = parameters.iter().map(|p| p.batch_probability.unwrap_or(1.0)).collect();
-    for (parameter, chance) in parameters.iter_mut().zip(family_wise(&batches)) {
-        parameter.batches_differ = chance < FAMILY;
-    }
     let by_parameter = by_parameter(&stations, &lasts, &names, &all);
     let (tested, few): (Vec<&AtStation>, Vec<&AtStation>) =
         stations.iter().partition(|units| units.len() >= FEWEST_UNITS);
-    let kinds = usize::from(!tested.is_empty()) + usize::from(by_parameter.iter().any(|of| !of.findings.is_empty()));
+    let is_by_batch = parameters.iter().any(|p| p.batch_probability.is_some());
+    let is_over_time = by_parameter.iter().any(|of| !of.findings.is_empty());
+    let kinds = [!tested.is_empty(), is_over_time, is_by_batch].into_iter().filter(|is_tested| *is_tested).count();
     let level = FAMILY / kinds.max(1) as f64;
+    let batches: Vec<f64> = parameters.iter().map(|p| p.batch_probability.unwrap_or(1.0)).collect();
+    for (parameter, chance) in parameters.iter_mut().zip(family_wise(&batches)) {
+        parameter.batches_differ = chance < level;
+    }
     let outlying = outlying(&tested, &lasts, &by_parameter, level);
     let findings = over_time(by_parameter, level);
     let batches_differ = parameters.iter().any(|p| p.batches_differ);
-    let are_compared = request.batches.is_empty() || parameters.iter().any(|p| p.batch_probability.is_some());
+    let are_compared = request.batches.is_empty() || is_by_batch;
     Some(UnitsHistoryReport {
         schema: UNITS_HISTORY_SCHEMA,
         program: Program::this(),
@@ -73,6 +75,7 @@ pub fn units_history(compared: &ComparedUnits, request: &UnitsHistoryRequest) ->
         sessions: all.len(),
         not_acceptable: all.iter().filter(|calibrated| !calibrated.acceptable).count(),
         left_out: left_out.clone(),
+        not_compared: not_compared(&all, &names),
         is_tested: few.is_empty(),
         untested: few.into_iter().map(|units| untested(units, &lasts)).collect(),
         is_sound: outlying.is_empty()
@@ -88,6 +91,14 @@ pub fn units_history(compared: &ComparedUnits, request: &UnitsHistoryRequest) ->
         without_unit: without_unit(&request.batches, &lasts),
         parameters,
     })
+}
+
+/// The parameters that some of the calibrations determine and others do not, by name.
+fn not_compared(all: &[&Calibrated], names: &[String]) -> Vec<NotComparedParameter> {
+    let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
+    all.iter().flat_map(|calibrated| calibrated.determined()).for_each(|name| *counts.entry(name).or_default() += 1);
+    let not_in_all = counts.into_iter().filter(|(name, _)| !names.iter().any(|of_all| of_all == name));
+    not_in_all.map(|(name, sessions)| NotComparedParameter { name: name.to_owned(), sessions }).collect()
 }
 
 /// Mean of one parameter over the calibrations of each unit; all determine it.
@@ -180,8 +191,8 @@ struct OfParameter {
 }
 
 /// All parameters, each unit by its sessions at one station. Values are as stated: priors, if there are any, draw all units in the same way.
-fn by_parameter(
-    stations: &[AtStation],
+fn by_parameter<'u>(
+    stations: &'u [AtStation<'u>],
     lasts: &[&Calibrated],
     names: &[String],
     all: &[&Calibrated],
@@ -190,12 +201,12 @@ fn by_parameter(
     let of_parameter = |name: &String| {
         let units = || stations.iter().flatten();
         let of_unit =
-            |(n, unit): &(usize, Vec<&Calibrated>)| Some((*n, series(unit, &single(name), zero, Basis::Stated)?));
-        let (numbers, series): (Vec<usize>, Vec<Series>) = units().filter_map(of_unit).unzip();
+            |unit: &'u (usize, Vec<&'u Calibrated>)| Some((unit, series(&unit.1, &single(name), zero, Basis::Stated)?));
+        let (compared, series): (Vec<_>, Vec<Series>) = units().filter_map(of_unit).unzip();
         OfParameter {
             name: name.clone(),
             is_known: series.len() == units().count(),
-            findings: findings(&numbers, &series, lasts, name),
+            findings: findings(&compared, &series, lasts, name),
         }
     };
     names.par_iter().map(of_parameter).collect()
@@ -244,12 +255,18 @@ fn outlying(
     found
 }
 
-/// The drift and the scatter of the units by their `numbers` in one parameter.
-fn findings(numbers: &[usize], series: &[Series], lasts: &[&Calibrated], name: &str) -> Vec<UnitFinding> {
+/// The drift and the scatter of `units`, each by its number and sessions, in one parameter.
+fn findings(
+    units: &[&(usize, Vec<&Calibrated>)],
+    series: &[Series],
+    lasts: &[&Calibrated],
+    name: &str,
+) -> Vec<UnitFinding> {
     let Some(between) = Between::of(series, Curve::Line, UnitHistoryRequest::COVERAGE) else { return Vec::new() };
-    let trends = numbers.iter().zip(unit_trends(series, between.variance, FAMILY));
-    let findings = trends.filter_map(|(&n, trend)| {
-        let trend = trend?;
+    let trends = units.iter().zip(series).zip(unit_trends(series, between.variance, FAMILY));
+    let findings = trends.filter_map(|(((n, sessions), series), trend)| {
+        let (n, trend) = (*n, trend?);
+        let step = series.step().map(|place| [place - 1, place].map(|session| sessions[session].date));
         let finding = |kind, probability| UnitFinding {
             kind,
             unit_serial: lasts[n].unit_serial.clone(),
@@ -257,6 +274,7 @@ fn findings(numbers: &[usize], series: &[Series], lasts: &[&Calibrated], name: &
             slope_per_year: trend.slope,
             slope_uncertainty: trend.standard_uncertainty,
             variance_ratio: trend.variance_ratio,
+            step,
             probability,
         };
         Some([
