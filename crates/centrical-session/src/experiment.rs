@@ -39,6 +39,7 @@ pub(crate) use self::session_there::{refuse_another_session, refuse_session};
 pub use self::speeds::{Measured, SpeedSource, Speeds};
 pub use self::stated_attitudes::StatedAttitudes;
 pub(crate) use self::stated_attitudes::write_attitudes;
+pub(crate) use self::terms::{ASKEW, misalignments_left_out};
 pub(crate) use self::toml_path::TomlPath;
 pub use self::turning::{MOST_DISTANT, Turning};
 pub use self::unit::OutputUnit;

@@ -6,6 +6,7 @@ use std::path::Path;
 use centrical::{MeasurementModel, Parameter, PriorError};
 
 use super::form::PriorValue;
+use super::terms::ASKEW;
 use super::toml_path::TomlPath;
 use crate::error::Error;
 use crate::quantity::Quantity;
@@ -22,6 +23,12 @@ pub(crate) struct PriorEntry {
 }
 
 impl PriorEntry {
+    /// That of a misalignment which the terms of rests leave out.
+    pub fn askew(name: String) -> Self {
+        let standard_uncertainty = Quantity::Text(ASKEW.to_owned());
+        Self { name, value: PriorValue { mean: None, standard_uncertainty } }
+    }
+
     /// Whether the name stands for a parameter of the model.
     pub fn is_of(&self, model: &MeasurementModel) -> bool {
         !model.parameters().select(&self.name).is_empty()

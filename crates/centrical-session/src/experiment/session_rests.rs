@@ -4,6 +4,7 @@ use centrical::{Centrifuge, Experiment, PairRelation};
 
 use super::form::{TermEntry, TermList};
 use super::plateaus::PlateauMean;
+use super::prior::PriorEntry;
 use super::rests::{self, RecordedRests, RestTable};
 use super::session::Session;
 use super::speeds::Speeds;
@@ -78,7 +79,7 @@ impl Session {
     }
 
     /// The session without the arm: its rests in free attitudes, and these terms of the error model. What is said of the arm, extensions of
-    /// the model and priors go.
+    /// the model and priors go; misalignments that the terms leave out have one.
     ///
     /// # Errors
     /// If it has no such rests that are measured, or a term is unknown.
@@ -88,7 +89,8 @@ impl Session {
             let expected = "a table of rests, or a record of a unit that is turned and rests again and again";
             return Err(TomlPath::entry(&self.file, "tumble", 0).unexpected("rests", "no such table", expected));
         }
-        let terms = TermList(terms.iter().cloned().map(TermEntry::Named).collect());
+        let askew = terms::misalignments_left_out(terms);
+        let terms = TermList(terms.iter().chain(&askew).cloned().map(TermEntry::Named).collect());
         let error_model = terms::error_model(&self.file, &terms)?;
         let Experiment { site, unit, .. } = self.experiment;
         let experiment = Experiment {
@@ -109,7 +111,7 @@ impl Session {
             plateaus: None,
             rest_tables: Vec::new(),
             durations: Vec::new(),
-            priors: Vec::new(),
+            priors: askew.into_iter().map(PriorEntry::askew).collect(),
             ..self
         };
         Ok(nothing.with_rest_tables(self.rest_tables))

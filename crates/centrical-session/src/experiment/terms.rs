@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use centrical::{ErrorModel, Extra, Monomial, Term};
+use centrical::{ErrorModel, Extra, Group, Monomial, Term};
 
 use super::form::{TermEntry, TermList, TermTable};
 use super::toml_path::TomlPath;
@@ -25,6 +25,19 @@ pub(crate) fn error_model(file: &Path, list: &TermList) -> Result<ErrorModel, Er
     }
     Ok(ErrorModel { terms })
 }
+
+/// The misalignments that a list of terms, as written for rests, leaves out. Between gravity and attitudes that only gravity shows they move a
+/// scale by as much as the attitudes are off the faces: ten milliradians of either make 100 ppm.
+pub(crate) fn misalignments_left_out(terms: &[String]) -> Vec<String> {
+    let preset = ErrorModel::kozlov_2017().terms;
+    let is_written = |name: &str| terms.iter().any(|term| term == name || term == "kozlov-2017");
+    let names = preset.into_iter().filter(|term| term.group == Group::Misalignment).map(|term| term.name);
+    names.filter(|name| !is_written(name)).collect()
+}
+
+/// How far newtonometers count as askew by which a list of terms for rests leaves out their misalignment: one part in a hundred, as data sheets
+/// of unselected triads have it.
+pub(crate) const ASKEW: &str = "10 mrad";
 
 /// The terms one entry stands for.
 fn expand(at: &TomlPath, entry: &TermEntry) -> Result<Vec<Term>, Error> {

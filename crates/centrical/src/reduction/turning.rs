@@ -42,6 +42,9 @@ const MOST_LEFT: f64 = 3.0;
 /// derivative, 1, they make `3 . 5/8`. The ratio is `7/8 . sqrt(192) = 7 sqrt(3)`.
 const OF_KINK: f64 = 7.0 * 1.732_050_807_568_877_2;
 
+/// What the polynomials leave of an arc with spikes, at most, in standard deviations of the noise alone.
+const MOST_SCATTER: f64 = 4.0;
+
 /// Samples of an arc for each one that may be left out as a spike.
 const PER_SPIKE: usize = 20;
 
@@ -55,9 +58,12 @@ pub(super) fn is_smooth(fit: &PlateauFit, white: &Vector3<f64>, radius: f64) -> 
     let size = fit.mean.norm();
     let along = fit.mean.normalize();
     let uncertainty = along.component_mul(white).norm() / (fit.samples as f64).sqrt();
-    // A bump takes some samples; where many are left out it is the motion that the polynomials miss.
-    let is_described = fit.left_out.spikes <= fit.samples / PER_SPIKE;
     let left = left(fit, white);
+    // A bump takes some samples. Where many are left out, or the others are not described either, it is the motion that the polynomials miss:
+    // the mean of the arc then lacks what these samples read.
+    let scatter = white.norm_squared() * (2.0 / fit.samples as f64).sqrt();
+    let is_described =
+        fit.left_out.spikes == 0 || fit.left_out.spikes <= fit.samples / PER_SPIKE && left <= MOST_SCATTER * scatter;
     // The way is `sqrt(left) / size`, and readings may be in counts, `size / g` of them for an acceleration: the size drops out.
     let of_kink = radius / STANDARD_GRAVITY * OF_KINK * left.sqrt() / (half * half);
     is_described && (left / (2.0 * size)).max(of_kink) <= MOST_LEFT * uncertainty

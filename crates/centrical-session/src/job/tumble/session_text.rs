@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use centrical::reduction::{CoarseScale, Rests};
 
 use super::request::TumbleRequest;
-use crate::experiment::{RAW_OUTPUT, Turning};
+use crate::experiment::{ASKEW, RAW_OUTPUT, Turning, misalignments_left_out};
 use crate::settings::toml_text;
 
 /// Name of the table of rests.
@@ -42,8 +42,13 @@ pub(super) fn session_text(request: &TumbleRequest, coarse: Option<&CoarseScale>
         }
         None => line(format!("output_unit = {}\n", toml_text(&request.unit))),
     }
-    let terms: Vec<String> = request.terms.iter().map(|term| toml_text(term)).collect();
+    let askew = misalignments_left_out(&request.terms);
+    let terms: Vec<String> = request.terms.iter().chain(&askew).map(|term| toml_text(term)).collect();
     line(format!("[model]\nerror_model = [{}]\n", terms.join(", ")));
+    if !askew.is_empty() {
+        let priors: Vec<String> = askew.iter().map(|name| format!("{name} = {ASKEW:?}\n")).collect();
+        line(format!("# Of what the terms leave out.\n[prior]\n{}", priors.concat()));
+    }
     line(format!("[[tumble]]\nrests = {TABLE:?}"));
     if rests.noise_at_most > 1.0 {
         line(format!("noise_at_most = {:?}", rests.noise_at_most));
