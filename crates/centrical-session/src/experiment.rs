@@ -9,6 +9,7 @@ mod plan;
 mod plateau_name;
 mod plateaus;
 mod prior;
+mod repeated_attitudes;
 mod rest_entry;
 mod rests;
 mod schedule;

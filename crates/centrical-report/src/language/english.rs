@@ -74,7 +74,7 @@ pub(crate) const ENGLISH: Messages = Messages {
     plateaus_drift: "plateaus drift",
     plateaus_drift_with_speed: "plateaus drift no more than their speeds may run",
     readings_creep: "readings creep after each turn, and rests are too short for that: their slopes follow the change of the reading before them",
-    readings_drift: "readings drift over plateaus by more than slow noise and the speeds explain: a temperature, a bias, a speed that has not settled or changed unseen",
+    readings_drift: "readings drift over plateaus or rests by more than slow noise, and on an arm its speed, explain: a temperature, a bias, a speed that has not settled or changed unseen",
     session_drifts: "the session drifts",
     no_drift: "no drift seen",
     drift_or_chance: "a drift or, in one session of twenty, chance",
@@ -339,7 +339,7 @@ pub(crate) const ENGLISH: Messages = Messages {
     presupposed: "The stated uncertainties presuppose a rigid arm, a constant temperature of the unit, and speeds whose errors \
         are independent from plateau to plateau.",
     presupposed_of_rests: "The stated uncertainties presuppose a constant temperature of the unit, and rests in which it stands still.",
-    chi_squared_small: "Residuals are smaller than the stated uncertainties allow: these are too large.",
+    chi_squared_small: "Residuals are smaller than the stated uncertainties allow: these are too large, or they take common errors as independent.",
     lost_parameters: "parameters of the instrument are not determined",
     speeds: "Speeds of the plateaus",
     switch_on: "After a switch-on",

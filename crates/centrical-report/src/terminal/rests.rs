@@ -16,11 +16,12 @@ pub(super) fn rests(screen: &mut Screen, result: &CalibrationResult) {
     }
     screen.gap();
     let known: Vec<f64> = result.model.positions.iter().filter_map(|position| position.attitude_uncertainty).collect();
-    screen.head("RESTS", if known.is_empty() { "in attitudes that only gravity shows" } else { "" });
+    screen.head("TUMBLE", if known.is_empty() { "in attitudes that only gravity shows" } else { "" });
     let lengths = rests.iter().filter_map(|rest| rest.window).map(|[from, to]| to - from);
     let (shortest, longest) =
         lengths.fold((f64::INFINITY, 0.0), |(low, high): (f64, f64), t| (low.min(t), high.max(t)));
-    let found = counted(rests.len(), "rest");
+    let arcs = result.turning.as_ref().map_or(0, |turning| turning.arcs);
+    let found = counted(rests.len(), if arcs == rests.len() { "arc" } else { "rest" });
     if longest > 0.0 {
         screen.say(2, &format!("{found}, of {shortest:.1} s to {longest:.1} s"));
     } else {
@@ -49,7 +50,7 @@ pub(super) fn rests(screen: &mut Screen, result: &CalibrationResult) {
     screen.say(2, &of_size);
     if let Some(turning) = &result.turning {
         let text = format!(
-            "{} of slow rotation among them, at {} deg/s and less, with {:.0} % of the weight; {} mm from its axes, where the acceleration along the vertical is uncertain by {} ug at most in an arc",
+            "{} of slow rotation, at {} deg/s and less, with {:.0} % of the weight; {} mm from its axes, where the acceleration along the vertical is uncertain by {} ug at most in an arc",
             counted(turning.arcs, "arc"),
             two_digits(turning.rate.to_degrees()),
             100.0 * turning.share,

@@ -14,6 +14,7 @@ use nalgebra::Vector3;
 use super::folder::Folder;
 use super::form::{AttitudeList, RecordEntry, TumbleTable};
 use super::plateaus::{Further, PLATEAUS, PlateauMean, plateaus_of};
+use super::repeated_attitudes::as_independent;
 use super::rest_entry::{known, refuse_duration, stated, switch_on, uncertainty};
 use super::schedule;
 use super::stated_attitudes::{ATTITUDES, CUBE, StatedAttitudes, directions, read_attitudes};
@@ -271,10 +272,15 @@ impl RestTable {
 
     /// The positions of the rests, numbered on from `first`. Where the vertical is, the attitude says, or else the mean.
     fn positions(&self, first: usize) -> impl Iterator<Item = Position> {
-        (first..).zip(self.directions()).enumerate().map(|(n, (number, up))| {
+        let uncertainties = self.attitudes.as_ref().map_or_else(Vec::new, |known| {
+            let means: Vec<Vector3<f64>> = self.means.iter().map(|rest| rest.mean).collect();
+            let factors = as_independent(&known.up_b, &means, known.uncertainty);
+            factors.into_iter().map(|factor| factor * known.uncertainty).collect()
+        });
+        (first..).zip(self.directions()).enumerate().map(move |(n, (number, up))| {
             let id = format!("r{number}");
             let known =
-                self.attitudes.as_ref().and_then(|known| Some((known.up_b.get(n).copied()??, known.uncertainty)));
+                self.attitudes.as_ref().and_then(|known| Some((known.up_b.get(n).copied()??, uncertainties[n])));
             let position = match known {
                 Some((up_b, uncertainty)) => Position::known(id, &up_b, uncertainty),
                 None => Position::free(id, up),

@@ -177,7 +177,8 @@ pub struct PositionSummary {
     /// Whether the unit rested here in an attitude of its own, not on the arm.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub is_free: bool,
-    /// Standard uncertainty of an attitude that is known, about each horizontal axis [rad].
+    /// Standard uncertainty of an attitude that is known, about each horizontal axis, as an error of this rest alone [rad]: above the stated one where
+    /// rests in one attitude share it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub attitude_uncertainty: Option<f64>,
 }
