@@ -10,7 +10,7 @@ use super::locate::{Located, locate_rests};
 use super::plateau::PlateauMean;
 use super::record::RecordSlice;
 use super::survey::Survey;
-use super::trembling::AttitudePart;
+use super::trembling::{AttitudePart, white_noise};
 use super::turning::{draw_out, is_smooth, noise_along, trembles};
 use crate::progress::{OnProgress, advance};
 
@@ -61,15 +61,16 @@ pub fn reduce_rests(records: &[RestRecord], progress: OnProgress<()>) -> Result<
     }
     let coarse = Ellipsoid::nearest(&means_of(&located));
     let of_record = |(record, (located, fits)): (&RestRecord, &(Located, Vec<PlateauFit>))| {
-        let part = AttitudePart::of(record.samples, fits, &coarse, located.sample_noise());
-        (part, uncertain_sizes(fits, located.sample_noise(), &coarse, part))
+        let white = white_noise(record.samples, fits, &coarse, located.sample_noise());
+        let part = AttitudePart::of(record.samples, fits, &coarse, &white);
+        ((white, part), uncertain_sizes(fits, &white, &coarse, part))
     };
-    let (parts, uncertain): (Vec<_>, Vec<_>) = records.iter().zip(&located).map(of_record).unzip();
+    let (trembling, uncertain): (Vec<_>, Vec<_>) = records.iter().zip(&located).map(of_record).unzip();
     advance(progress, ())?;
-    let with_noise = located.iter_mut().zip(&parts).flat_map(|((located, fits), part)| {
-        let white = *located.sample_noise();
-        fits.iter_mut().map(move |fit| (fit, white, part.mean))
-    });
+    let with_noise = located
+        .iter_mut()
+        .zip(&trembling)
+        .flat_map(|((_, fits), (white, part))| fits.iter_mut().map(move |fit| (fit, *white, part.mean)));
     let ellipsoid = draw_out(with_noise, coarse);
     advance(progress, ())?;
     let mut along = Vec::new();

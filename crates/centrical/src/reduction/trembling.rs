@@ -16,6 +16,7 @@ use super::average::PlateauFit;
 use super::ellipsoid::Ellipsoid;
 use super::record::RecordSlice;
 use crate::model::Position;
+use crate::statistics::median;
 
 /// Fewest rests that show the scatter between them.
 const FEWEST: usize = 3;
@@ -42,6 +43,29 @@ pub(super) struct AttitudePart {
     pub mean: f64,
     /// Its standard uncertainty.
     pub standard_uncertainty: f64,
+}
+
+/// The white noise of readings beside a tremor of the attitude, no more than `white` [m/s^2], which second differences of the readings show. A tremor
+/// that reaches up to half the sampling rate is in these, and not in the size of the force: of it the second differences show the noise alone.
+/// The median over the rests among the `fits` of a record.
+pub(super) fn white_noise(
+    record: RecordSlice,
+    fits: &[PlateauFit],
+    ellipsoid: &Ellipsoid,
+    white: &Vector3<f64>,
+) -> Vector3<f64> {
+    let part = |fit: &PlateauFit| {
+        let samples = record.between(fit.window);
+        let excess = |n: usize| ellipsoid.excess(&Vector3::from_fn(|axis, _| samples.f_z[axis][n]));
+        let excess: Vec<f64> = (0..samples.t.len().min(MOST)).map(excess).collect();
+        let squares = excess.windows(3).map(|e| (e[0] - 2.0 * e[1] + e[2]).powi(2)).sum::<f64>();
+        let along = ellipsoid.half_gradient(&fit.mean).component_mul(white).norm();
+        // The variance of second differences is six-fold.
+        (squares / (6 * excess.len().saturating_sub(2)) as f64).sqrt() / along
+    };
+    let rests = fits.iter().filter(|fit| !fit.turns());
+    let mut parts: Vec<f64> = rests.map(part).filter(|part| part.is_finite()).collect();
+    if parts.is_empty() { *white } else { white * median(&mut parts).min(1.0) }
 }
 
 /// Sums over the samples of a rest.

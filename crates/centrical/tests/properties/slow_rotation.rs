@@ -41,7 +41,7 @@ fn turned(making: &Making, rotation: &Rotation, random: &mut Random) -> Made {
         (None, Some(time)) => about_axes(rotation, time, count, attitude, random),
         (Some(time), _) => in_a_hand(rotation, time, count, attitude, random),
     };
-    let (mut slow, mut tremor) = (Markov::new(1.0, random), Markov::new(0.3, random));
+    let (mut slow, mut tremor) = (Markov::new(1.0, random), Markov::new(making.tremor_time, random));
     let mut record = Record::default();
     let mut bump = usize::MAX;
     for n in 0..count {
