@@ -438,7 +438,7 @@ fn a_tremor_shortens_no_rest() {
     let mut random = Random::new(29);
     // One that reaches up to half the sampling rate is in the second differences of the readings, too.
     for (tremor_time, tremor) in [(0.3, 1e-2), (0.01, 5e-3)] {
-        let mean = mean_squared_error(&Making { tremor_time, tremor, ..trembling }, RUNS, &mut random);
+        let mean = mean_squared_error(&Making { tremor, tremor_time, ..trembling }, RUNS, &mut random);
         assert!(mean < 1.0 + 4.0 * (2.0 / (9 * RUNS) as f64).sqrt(), "{tremor_time} s: {mean}");
     }
     // Six rests show no ellipsoid in general position, and what trembles less well: the sizes of their means are right within their uncertainty.
