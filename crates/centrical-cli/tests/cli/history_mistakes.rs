@@ -559,6 +559,21 @@ fn a_limit_has_a_unit() {
     }
 }
 
+/// Days before the last calibration, names that nothing has and days of long ago are said to be so.
+#[test]
+fn days_and_names_that_nothing_has_are_named() {
+    let results = Results::new();
+    results.add("a", "0001", "1924-05-01", |_| {});
+    results.add("b", "0001", "2024-01-01", |_| {});
+    let (code, _, message) = results.run(&["unit", ".", "--until", "2023-01-01"]);
+    assert!(code == 2 && message.contains("found --until 2023-01-01, expected 2024-01-01"), "{message}");
+    assert_eq!(results.run(&["add", "store", "a", "b"]).0, 0);
+    let (code, text, _) = results.run(&["list", "store", "--check"]);
+    assert!(code == 1 && text.contains("LONG AGO") && text.contains("found a date before 1980"), "{text}");
+    let (code, _, message) = results.run(&["list", "store", "--station", "nowhere"]);
+    assert!(code == 2 && message.contains("found no such calibration"), "{message}");
+}
+
 /// A repair is a step between two sessions, not a drift; a session with an objection counts, which is said.
 #[test]
 fn a_repair_is_named_as_a_step() {

@@ -124,7 +124,8 @@ pub fn history_unit(
     };
     let asked = day("on", on)?;
     let on = Some(asked.unwrap_or_else(Date::today));
-    let request = UnitHistoryRequest { trend, until: day("until", until)?, limit, on, coverage: confidence };
+    let until = day("until", until)?;
+    let request = UnitHistoryRequest { trend, until, limit, on, coverage: confidence };
     let results = given(results)?;
     progress::run(py, &None, |work| {
         let (model, serial, station) = chosen;
@@ -137,9 +138,10 @@ pub fn history_unit(
             let expected = "calibrations of one, by serial and model";
             return Err(Error::content(&results[0], Place::Whole, several_units(&own), expected));
         };
-        let is_early = |on: Date| Some((on, expected_day(on, own)?));
-        if let Some((on, expected)) = asked.and_then(is_early) {
-            return Err(Error::content(&results[0], Place::Whole, format!("on = {on}"), expected));
+        for (name, asked) in [("on", asked), ("until", until)] {
+            if let Some((day, expected)) = asked.and_then(|day| Some((day, expected_day(day, own)?))) {
+                return Err(Error::content(&results[0], Place::Whole, format!("{name} = {day}"), expected));
+            }
         }
         let others: Vec<_> = others.into_iter().filter(|unit| unit[0].unit_model == own[0].unit_model).collect();
         let report = unit_history(own, &others, request)

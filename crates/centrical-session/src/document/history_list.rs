@@ -49,6 +49,8 @@ pub enum DoubtKind {
     NoDay,
     /// A day that is still to come.
     Ahead,
+    /// A day before 1980.
+    LongAgo,
     /// No copy of the result.
     Missing,
     /// A copy that is not what was added.

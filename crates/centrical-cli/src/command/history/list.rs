@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use centrical_report::history_list_text;
-use centrical_session::{Error, Selection, check_store, list_store, today, unwatched};
+use centrical_session::{Error, Place, Selection, check_store, list_store, today, unwatched};
 
 use crate::outcome::Outcome;
 use crate::printing::Printing;
@@ -43,6 +43,11 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     } else {
         list_store(&arguments.store, selection, &unwatched)?
     };
+    let is_asked = [&arguments.model, &arguments.serial, &arguments.station].into_iter().any(Option::is_some);
+    if is_asked && list.calibrations.is_empty() {
+        let expected = "a calibration, as --model, --serial and --station ask for";
+        return Err(Error::content(&arguments.store, Place::Whole, "no such calibration", expected));
+    }
     arguments.printing.show(|| history_list_text(&list), || list.to_json())?;
     Ok(Outcome::acceptable(list.doubts.is_none_or(|doubts| doubts.is_empty())))
 }

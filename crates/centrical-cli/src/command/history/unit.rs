@@ -67,9 +67,10 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let same_model = |unit: &Vec<Calibrated>| unit.first().is_some_and(|c| c.unit_model == calibrations[0].unit_model);
     let others: Vec<_> = others.into_iter().filter(same_model).collect();
     choice.remark_alike();
-    let is_early = |on: Date| Some((on, expected_day(on, calibrations)?));
-    if let Some((on, expected)) = arguments.on.and_then(is_early) {
-        return Err(choice.refuse(format!("--on {on}"), &expected));
+    for (option, asked) in [("--on", arguments.on), ("--until", arguments.until)] {
+        if let Some((day, expected)) = asked.and_then(|day| Some((day, expected_day(day, calibrations)?))) {
+            return Err(choice.refuse(format!("{option} {day}"), &expected));
+        }
     }
     let request = UnitHistoryRequest {
         trend: !arguments.without_trend,

@@ -85,6 +85,7 @@ const fn words(kind: DoubtKind) -> (&'static str, &'static str) {
             ("NO DAY", "found a date that is no day, expected one such as 2026-10-05: histories leave it out")
         }
         DoubtKind::Ahead => ("AHEAD", "found a date later than today, expected the day of the session"),
+        DoubtKind::LongAgo => ("LONG AGO", "found a date before 1980, expected the day of the session"),
         DoubtKind::Missing => ("MISSING", "found no copy of the result in the folder results, expected one"),
         DoubtKind::RowChanged => (
             "ROW CHANGED",

@@ -118,10 +118,14 @@ fn keys(rows: &[&Row]) -> Vec<String> {
     keys
 }
 
+/// A session before 1980, in days from 1970-01-01: records for programs are later.
+const EARLIEST: i64 = 3652;
+
 fn day(row: &Row, today: i64) -> Option<Doubt> {
     let kind = match row.day {
         None => DoubtKind::NoDay,
         Some(day) if day > today => DoubtKind::Ahead,
+        Some(day) if day < EARLIEST => DoubtKind::LongAgo,
         Some(_) => return None,
     };
     Some(Doubt { kind, of: vec![row.key.clone()] })

@@ -52,8 +52,8 @@ const PARTS: [f64; 4] = [-1.0, -0.5, 0.5, 1.0];
 const READINGS: usize = 3 * (1 + 3 * PARTS.len());
 
 /// What is expected in place of a day `on` which the limit is to hold, if it is before the last calibration.
-pub fn expected_day(on: Date, calibrations: &[Calibrated]) -> Option<String> {
-    let last = calibrations.last().filter(|last| on < last.date)?;
+pub fn expected_day(day: Date, calibrations: &[Calibrated]) -> Option<String> {
+    let last = calibrations.last().filter(|last| day < last.date)?;
     Some(format!("{}, the day of the last calibration, or a later one", last.date))
 }
 
