@@ -185,6 +185,11 @@ fn cell(parameter: &ParameterEstimate) -> Cell {
 fn not_estimable(screen: &mut Screen, result: &CalibrationResult) {
     let seen = &result.observability;
     if seen.null_directions.is_empty() {
+        let vague: Vec<&str> = result.parameters.iter().filter(|p| !p.estimable).map(|p| p.name.as_str()).collect();
+        if !vague.is_empty() {
+            screen.gap();
+            screen.head("NOT SEEN", &format!("to a tenth or better: {}", vague.join(", ")));
+        }
         return;
     }
     screen.gap();

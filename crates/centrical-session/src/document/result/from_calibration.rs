@@ -16,6 +16,7 @@ use super::schema::{
     TermSummary,
 };
 use super::speeds::SpeedsSummary;
+use super::verdict::is_vague;
 use crate::document::steadiness::{DriftSummary, TiltSummary};
 use crate::experiment::{OutputUnit, Session};
 use crate::record::{Columns, Scale};
@@ -36,7 +37,10 @@ impl CalibrationResult {
         let (model, fit) = (calibration.data().model(), calibration.fit());
         let budget = calibration.budget()?;
         advance(progress, 0)?;
-        let covariance = |i, j| fit.covariance(i, j);
+        // A scale that may be off by a tenth and more is not determined, whatever the rank.
+        let has_none =
+            |j: &usize| fit.standard_uncertainty(*j).is_some_and(|u| is_vague(model.parameters()[*j].group, u));
+        let covariance = |i, j| fit.covariance(i, j).filter(|_| ![i, j].iter().any(has_none));
         let count = model.parameters().len();
         let (validity, rests_on) = if fit.termination == Termination::Linear {
             (None, Vec::new())
@@ -218,11 +222,11 @@ impl ParameterEstimate {
         let parameter = &model.parameters()[j];
         Self {
             name: parameter.name.clone(),
-            value: fit.value(j),
+            value: fit.value(j).filter(|_| standard_uncertainty.is_some()),
             standard_uncertainty,
             unit: parameter.unit.clone(),
             group: parameter.group,
-            estimable: fit.value(j).is_some(),
+            estimable: standard_uncertainty.is_some(),
             prior: fit.prior_uses().iter().find(|used| used.prior.parameter == j).map(PriorSummary::from),
             prior_share: if model.priors().is_empty() { None } else { fit.prior_share(j) },
             rests_on_prior: fit.rests_on_prior(j),

@@ -11,6 +11,11 @@ use super::speeds::SpeedFinding;
 /// A scale or a misalignment that is less certain has no covariance that holds: the reading is not linear over so much.
 const MOST_UNCERTAIN: f64 = 0.1;
 
+/// Whether a coefficient of a group is so uncertain that it has no value.
+pub(super) fn is_vague(group: Group, standard_uncertainty: f64) -> bool {
+    matches!(group, Group::Scale | Group::Misalignment) && standard_uncertainty > MOST_UNCERTAIN
+}
+
 /// An objection to a result: plateaus as `mounting:plateau`, counted from 1.
 pub type ResultObjection = Objection<String, PatternSummary, RivalSummary, SpeedFinding>;
 
@@ -23,11 +28,9 @@ impl CalibrationResult {
         let patterns = validity.flat_map(|validity| &validity.patterns);
         let speeds = self.speeds.iter().flat_map(|speeds| &speeds.findings);
         let terms = self.model.error_model.iter().map(|term| &term.name);
-        let is_vague = |p: &ParameterEstimate| {
-            matches!(p.group, Group::Scale | Group::Misalignment)
-                && p.standard_uncertainty.is_some_and(|u| u > MOST_UNCERTAIN)
-        };
-        let is_lost = |name: &&String| self.parameter(name).is_none_or(|p| !p.estimable || is_vague(p));
+        // Older programs gave such a coefficient a value.
+        let is_without = |p: &ParameterEstimate| p.standard_uncertainty.is_some_and(|u| is_vague(p.group, u));
+        let is_lost = |name: &&String| self.parameter(name).is_none_or(|p| !p.estimable || is_without(p));
         objections(Findings {
             termination: self.fit.termination,
             iterations: self.fit.iterations,
