@@ -48,8 +48,8 @@ pub(crate) fn type_b(
         let meaning = "a standard uncertainty, zero or more and not beyond reason";
         table.get(key).map(|q| at.bounded(key, q, dimension, (0.0, largest), meaning)).transpose()
     };
-    // Beyond these a unit was mistaken: 1 m, 1 rad, 10 m/s^2, 100 %; for gravity twice its range over the Earth.
-    let length = |key| read(key, Dimension::Length, 1.0);
+    // Beyond these a unit was mistaken: 0.1 m and rad of what a machine sets, 1 rad, 10 m/s^2, 100 %; for gravity twice its range over the Earth.
+    let length = |key| read(key, Dimension::Length, 0.1);
     let angle = |key| read(key, Dimension::Angle, 1.0);
     let acceleration = |key| read(key, Dimension::Acceleration, 10.0);
     let ratio = |key| read(key, Dimension::Ratio, 1.0);
@@ -77,7 +77,7 @@ pub(crate) fn type_b(
         radius,
         radius_difference,
         speed_scale: speed_scale.unwrap_or(speeds.scale()),
-        rest_angle: angle("rest_angle")?.unwrap_or(0.0),
+        rest_angle: read("rest_angle", Dimension::Angle, 0.1)?.unwrap_or(0.0),
         proof_masses: length("proof_masses")?.unwrap_or(0.0),
         attitude: angle("attitude")?.unwrap_or(0.0),
         bias_change: acceleration("bias_change")?.unwrap_or(ANY_BIAS),

@@ -384,6 +384,15 @@ fn measured_speeds() {
     );
 }
 
+/// Half a metre beside an arm of half a metre: millimetres without a unit.
+#[test]
+fn an_uncertainty_beyond_reason() {
+    assert_eq!(
+        message(spoiled("rotation = \"+3\"", "rotation = \"+3\"\n\n[uncertainty]\nradius = 0.5")),
+        "experiment.toml, [uncertainty], radius: found 0.5, expected a standard uncertainty, zero or more and not beyond reason"
+    );
+}
+
 /// It bounds nothing between mountings.
 #[test]
 fn a_change_of_bias_needs_rests() {
