@@ -20,7 +20,7 @@ use nalgebra::{DMatrix, DVector, Matrix3, SymmetricEigen, Vector3};
 use super::rivals::Rivals;
 use super::rivals::columns::Columns;
 use crate::fit::Calibration;
-use crate::model::{self, Extension, FitError, Observation, Rival, TypeB};
+use crate::model::{Course, Extension, FitError, Observation, Rival, TypeB};
 use crate::progress::{OnProgress, advance};
 
 /// Strengths per decade, over the mean variance of a rest, and from where on. Below the first no standard uncertainty changes by more
@@ -36,7 +36,7 @@ const LENGTHS: [f64; 4] = [0.0, 2.0, 6.0, 18.0];
 const FEWEST: f64 = 2.0;
 
 /// The drift of the biases.
-const DRIFT: Rival = Rival::Effect(Extension::Disturbance(model::Course::Time));
+const DRIFT: Rival = Rival::Effect(Extension::Disturbance(Course::Time));
 
 /// Standard deviations of what differs from rest to rest.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -87,17 +87,17 @@ impl Calibration<'_> {
         let rivals = Rivals::of(self, progress)?;
         let drift = rivals.get(DRIFT).map(|drift| &drift.columns);
         let moved = self.moved(&scatter)?;
-        let mut courses = Vec::with_capacity(LENGTHS.len());
+        let mut scatters = Vec::with_capacity(LENGTHS.len());
         for length in LENGTHS {
             let correlation = correlation(rests.len(), length);
             let about_mean = if length > 0.0 { about_mean(&correlation) } else { correlation.clone() };
             let harm =
                 (&moved * along_forces(rests, &about_mean)).dot(&moved) / moved.norm_squared().max(f64::MIN_POSITIVE);
             let residuals = Residuals::of(&scatter, &redundancy, along_forces(rests, &correlation), drift, unit);
-            courses.push(Course { residuals: residuals.ok_or(FitError::Overflow)?, harm });
+            scatters.push(Correlated { residuals: residuals.ok_or(FitError::Overflow)?, harm });
             advance(progress, ())?;
         }
-        let (scatter, drift) = posterior_mean(&courses);
+        let (scatter, drift) = posterior_mean(&scatters);
         Ok(Some(BetweenRests { scatter: unit * scatter.sqrt(), drift: unit * drift.sqrt() }))
     }
 
@@ -134,7 +134,7 @@ fn about_mean(correlation: &DMatrix<f64>) -> DMatrix<f64> {
 }
 
 /// Scatter of one correlation length.
-struct Course {
+struct Correlated {
     residuals: Residuals,
     /// Variance of independent scatter that moves the coefficients as far, over its own.
     harm: f64,
@@ -201,18 +201,20 @@ impl Residuals {
 }
 
 /// Posterior means of both variances, in units of that of a rest.
-fn posterior_mean(courses: &[Course]) -> (f64, f64) {
+fn posterior_mean(scatters: &[Correlated]) -> (f64, f64) {
     let strengths = (0..=PER_DECADE * DECADES).map(|k| SMALLEST * 10_f64.powf(k as f64 / PER_DECADE as f64));
     let slab: Vec<f64> = strengths.collect();
-    let none = &courses[0].residuals;
+    let none = &scatters[0].residuals;
     // Each strength has its share of what absence has, and of that of a scatter each length.
     let share = 1.0 / slab.len() as f64;
     let drifts = std::iter::once((0.0, 1.0)).chain(slab.iter().map(|w| (*w, share)));
     let mut points = Vec::new();
     for (w, prior) in drifts.filter(|(w, _)| *w == 0.0 || none.is_drift_asked) {
         points.push((0.0, w, prior, none.log_likelihood(0.0, w)));
-        let prior = prior * share / courses.len() as f64;
-        for (Course { residuals, harm }, v) in courses.iter().flat_map(|course| slab.iter().map(move |v| (course, v))) {
+        let prior = prior * share / scatters.len() as f64;
+        for (Correlated { residuals, harm }, v) in
+            scatters.iter().flat_map(|scatter| slab.iter().map(move |v| (scatter, v)))
+        {
             points.push((v * harm, w, prior, residuals.log_likelihood(*v, w)));
         }
     }
