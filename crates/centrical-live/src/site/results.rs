@@ -3,7 +3,9 @@
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::{Path, PathBuf};
 
-use centrical_report::{LIVE_STYLE, Language, ListedResult, compared_page, figures, html, report, results_page};
+use centrical_report::{
+    LIVE_STYLE, Language, ListedResult, compared_page, figures, html, report, results_page, unchosen_page,
+};
 use centrical_session::{CalibrationResult, ComparisonRequest, Error, collect_results, compare_results};
 
 use super::answer::{Answer, Query, Site};
@@ -73,7 +75,10 @@ impl Results {
     }
 
     fn compared(&self, query: &Query) -> Option<Answer> {
-        let files = [self.file(query.get("first")?)?, self.file(query.get("second")?)?];
+        let (Some(first), Some(second)) = (query.get("first"), query.get("second")) else {
+            return Some(Answer::Page(unchosen_page(query.language())));
+        };
+        let files = [self.file(first)?, self.file(second)?];
         let compared = || {
             let results = [CalibrationResult::read(&files[0])?, CalibrationResult::read(&files[1])?];
             let named = [(files[0].as_path(), &results[0]), (files[1].as_path(), &results[1])];

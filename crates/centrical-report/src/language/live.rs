@@ -89,6 +89,10 @@ pub(crate) struct LiveMessages {
     pub differences: &'static str,
     pub agree: &'static str,
     pub disagree: &'static str,
+    /// Results that are compared are of two units.
+    pub other_units: &'static str,
+    /// Fewer than two results are chosen.
+    pub choose_two: &'static str,
     pub unreadable: &'static str,
 }
 
@@ -177,6 +181,8 @@ pub(super) const IN_ENGLISH: LiveMessages = LiveMessages {
     differences: "Differences",
     agree: "The results agree.",
     disagree: "The results do not agree.",
+    other_units: "The results are of different units.",
+    choose_two: "Choose two results to compare.",
     unreadable: "cannot be read",
 };
 
@@ -265,6 +271,8 @@ pub(super) const IN_RUSSIAN: LiveMessages = LiveMessages {
     differences: "Разности",
     agree: "Результаты согласуются.",
     disagree: "Результаты не согласуются.",
+    other_units: "Результаты относятся к разным приборам.",
+    choose_two: "Выберите два результата для сравнения.",
     unreadable: "не читается",
 };
 

@@ -83,16 +83,31 @@ fn row(body: &mut String, listed: &ListedResult, language: Language) -> std::fmt
 /// Two results compared.
 pub fn compared_page(report: &ComparisonReport, language: Language) -> String {
     let words = language.live();
-    let (class, verdict) = if report.agree { ("good", words.agree) } else { ("bad", words.disagree) };
-    let mut body = format!(
-        "<header><p class=\"kind\">{}</p><h1 class=\"{class}\">{verdict}</h1><p><a href=\"/?lang={}\">{}</a></p></header>\n\
-         <figure>{}</figure>\n<div lang=\"en\">",
-        words.differences,
-        language.code(),
-        words.results,
-        comparison_plot(report)
-    );
+    let (class, verdict) = match (report.agree, report.is_of_one_unit()) {
+        (true, _) => ("good", words.agree),
+        (false, true) => ("bad", words.disagree),
+        (false, false) => ("bad", words.other_units),
+    };
+    let mut body = compared_header(class, verdict, language);
+    let _ = writeln!(body, "<figure>{}</figure>\n<div lang=\"en\">", comparison_plot(report));
     shown(&mut body, &comparison_text(report));
     body.push_str("</div>\n");
     served(verdict, &body, false, language)
+}
+
+/// The page in place of a comparison for which fewer than two results are chosen.
+pub fn unchosen_page(language: Language) -> String {
+    let words = language.live();
+    served(words.choose_two, &compared_header("bad", words.choose_two, language), false, language)
+}
+
+/// The head of a comparison, with the way back to the list.
+fn compared_header(class: &str, verdict: &str, language: Language) -> String {
+    let words = language.live();
+    format!(
+        "<header><p class=\"kind\">{}</p><h1 class=\"{class}\">{verdict}</h1><p><a href=\"/?lang={}\">{}</a></p></header>\n",
+        words.differences,
+        language.code(),
+        words.results
+    )
 }

@@ -17,8 +17,10 @@ pub fn comparison_text(report: &ComparisonReport) -> Screen {
         (Emphasis::Warning, "AGREE", words)
     } else if report.agree {
         (Emphasis::Acceptable, "AGREE", "no difference beyond what the uncertainties explain")
-    } else {
+    } else if report.is_of_one_unit() {
         (Emphasis::NotAcceptable, "DO NOT AGREE", "the reasons stand below")
+    } else {
+        (Emphasis::NotAcceptable, "OTHER UNITS", "the results are of different units; their differences stand below")
     };
     screen.marked(emphasis, mark, words);
     screen.gap();

@@ -107,6 +107,11 @@ pub struct DifferenceSummary {
 }
 
 impl ComparisonReport {
+    /// Whether all results are of one unit.
+    pub fn is_of_one_unit(&self) -> bool {
+        self.comparisons.iter().all(|pair| pair.same_unit)
+    }
+
     /// Results by their files, and the pairs that were compared.
     pub(crate) fn new(results: &[(&Path, &CalibrationResult)], comparisons: Vec<PairComparison>) -> Self {
         let summary = |(file, result): &(&Path, &CalibrationResult)| ComparedResultSummary {
