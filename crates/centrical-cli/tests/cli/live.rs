@@ -344,7 +344,8 @@ fn finished_work_is_listed_reported_and_compared() {
     assert!(status == 200 && compared.contains("The results agree."), "{compared}");
     let (status, unchosen) = served.get("/compare?first=0&lang=ru");
     assert!(status == 200 && unchosen.contains("Выберите два результата"), "{unchosen}");
-    for (path, expected) in [("/report/0", 404), ("/report/", 404), ("/compare?first=0&second=1", 404), ("/live", 503)] {
+    for (path, expected) in [("/report/0", 404), ("/report/", 404), ("/compare?first=0&second=1", 404), ("/live", 503)]
+    {
         assert_eq!(served.get(path).0, expected, "{path}");
     }
     // A later result is in the list without a new start, and those before keep their addresses.
