@@ -96,4 +96,4 @@ impl UnitPages {
 pub const DOCTYPE: &str = "<!DOCTYPE html>\n";
 
 /// Counts up when a page of the same calibrations looks otherwise.
-const FORM: u32 = 5;
+const FORM: u32 = 6;
