@@ -256,7 +256,7 @@ fn repeated_rests_on_a_face_share_its_error() {
     let result = result.unwrap();
     let shared = result["model"]["positions"][0]["attitude_uncertainty"].as_f64().unwrap();
     assert!((shared - 2e-3).abs() < 1e-5, "{shared}");
-    // Of one visit each, of which the cube's error is all.
+    // With one visit to each face the uncertainty is the same: the error of the cube.
     write(&copy, "faces.csv", &rows_of(&faces(1, off), 100, 1e-3, 6, |s| s.reading));
     let single = tumble(&copy, &known).2.unwrap();
     let u = |result: &Value| {

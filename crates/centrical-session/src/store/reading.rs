@@ -40,6 +40,11 @@ pub struct Rows<'a> {
 }
 
 impl Selection {
+    /// Whether it asks for a model, a serial number or a station.
+    pub fn names_any(&self) -> bool {
+        [&self.unit_model, &self.unit_serial, &self.station].into_iter().any(Option::is_some)
+    }
+
     /// Whether it picks a row.
     pub(crate) fn takes(&self, row: &Row) -> bool {
         let is = |wanted: &Option<String>, found: &str| wanted.as_deref().is_none_or(|wanted| wanted == found);

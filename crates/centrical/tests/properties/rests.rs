@@ -733,8 +733,8 @@ fn what_differs_between_rests_is_what_the_restricted_likelihood_says() {
         let none = logarithm(0, 0.0, 0.0);
         let (mut sum, mut means) = (0.0, [0.0; 2]);
         for (v, w) in strengths.iter().flat_map(|v| strengths.iter().map(move |w| (*v, *w))) {
-            for (course, harm) in harms.iter().enumerate() {
-                let chance = (logarithm(course, v * variance, w * variance) - none).exp();
+            for (scatter, harm) in harms.iter().enumerate() {
+                let chance = (logarithm(scatter, v * variance, w * variance) - none).exp();
                 let weight = prior(v) * prior(w) * chance / lengths.len() as f64;
                 sum += weight;
                 means[0] += weight * v * harm * variance;

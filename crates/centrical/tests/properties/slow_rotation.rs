@@ -15,14 +15,21 @@ use crate::rests::{
 struct Rotation {
     /// Rate about the axis of a table, fastest rate in a hand [rad/s].
     rate: f64,
-    /// Correlation time of the rate of a hand [s]; `None` on a table.
-    hand: Option<f64>,
-    /// Time after which a table stops and turns on about another axis [s]; `None` if it goes from pole to pole.
-    segment: Option<f64>,
+    way: Way,
     /// Duration [s].
     duration: f64,
     /// Largest distance of the proof masses from the axis of rotation [m].
     radius: f64,
+}
+
+#[derive(Clone, Copy)]
+enum Way {
+    /// On a table, from pole to pole.
+    Poles,
+    /// On a table that stops after each such time [s], and turns on about another axis.
+    Axes(f64),
+    /// In a hand whose rate has that correlation time [s].
+    Hand(f64),
 }
 
 /// On a table the unit turns about an axis of its own, which is tilted from pole to pole, there and back twice, in a random attitude; in a
@@ -36,10 +43,10 @@ fn turned(making: &Making, rotation: &Rotation, random: &mut Random) -> Made {
     let count = (rotation.duration * RATE) as usize;
     let attitude = Rotation3::from_scaled_axis(Vector3::from_fn(|_, _| 2.0 * random.normal()));
     let place = Vector3::from_fn(|_, _| random.normal()).normalize() * rotation.radius;
-    let way = match (rotation.hand, rotation.segment) {
-        (None, None) => on_a_table(rotation, count, attitude),
-        (None, Some(time)) => about_axes(rotation, time, count, attitude, random),
-        (Some(time), _) => in_a_hand(rotation, time, count, attitude, random),
+    let way = match rotation.way {
+        Way::Poles => on_a_table(rotation, count, attitude),
+        Way::Axes(time) => about_axes(rotation, time, count, attitude, random),
+        Way::Hand(time) => in_a_hand(rotation, time, count, attitude, random),
     };
     let (mut slow, mut tremor) = (Markov::new(1.0, random), Markov::new(making.tremor_time, random));
     let mut record = Record::default();
@@ -137,7 +144,7 @@ fn judged(making: &Making, rotation: &Rotation, random: &mut Random) -> Judged {
 #[test]
 fn slow_rotation_shows_what_rests_show() {
     const RUNS: usize = 10;
-    let rotation = Rotation { rate: 2.5_f64.to_radians(), hand: None, segment: None, duration: 600.0, radius: 0.0 };
+    let rotation = Rotation { rate: 2.5_f64.to_radians(), way: Way::Poles, duration: 600.0, radius: 0.0 };
     let mut random = Random::new(43);
     let made = turned(&ON_A_TABLE, &rotation, &mut random);
     assert!(reduce_rests(&[made.record.as_slice().into()], &unwatched).unwrap().means.concat().is_empty());
@@ -155,8 +162,7 @@ fn slow_rotation_shows_what_rests_show() {
 
 #[test]
 fn a_bias_leaves_the_noise_of_arcs() {
-    let rotation =
-        Rotation { rate: 2.5_f64.to_radians(), hand: Some(3.0), segment: None, duration: 600.0, radius: 0.0 };
+    let rotation = Rotation { rate: 2.5_f64.to_radians(), way: Way::Hand(3.0), duration: 600.0, radius: 0.0 };
     let trembling = Making { tremor: 5e-3, ..BY_HAND };
     assert_a_bias_leaves_the_noise(turned(&trembling, &rotation, &mut Random::new(18)), Some(0.0));
 }
@@ -165,7 +171,7 @@ fn a_bias_leaves_the_noise_of_arcs() {
 #[test]
 fn a_place_beside_the_axis_leaves_the_noise() {
     let noise = |radius: f64| {
-        let rotation = Rotation { rate: 2.5_f64.to_radians(), hand: None, segment: None, duration: 600.0, radius };
+        let rotation = Rotation { rate: 2.5_f64.to_radians(), way: Way::Poles, duration: 600.0, radius };
         let white = Making { slow: 0.0, ..ON_A_TABLE };
         noise_along_force(&turned(&white, &rotation, &mut Random::new(19)), Some(radius))
     };
@@ -177,8 +183,7 @@ fn a_place_beside_the_axis_leaves_the_noise() {
 /// An arc over a change of the axis is left out where its spikes are the motion that the polynomials miss.
 #[test]
 fn arcs_over_a_change_of_the_axis_do_no_harm() {
-    let rotation =
-        Rotation { rate: 2.8_f64.to_radians(), hand: None, segment: Some(45.0), duration: 1200.0, radius: 0.0 };
+    let rotation = Rotation { rate: 2.8_f64.to_radians(), way: Way::Axes(45.0), duration: 1200.0, radius: 0.0 };
     let making = Making { white: Vector3::repeat(2e-3), slow: 0.0, ..ON_A_TABLE };
     let mut random = Random::new(52);
     let records: Vec<Judged> = (0..8).map(|_| judged(&making, &rotation, &mut random)).collect();
@@ -190,7 +195,7 @@ fn arcs_over_a_change_of_the_axis_do_no_harm() {
 /// A bias that warms up is in the noise along the force, and with it in the stated variances. It is found by the scatter of the other residuals.
 #[test]
 fn a_unit_that_warms_up_as_it_turns_is_refused() {
-    let rotation = Rotation { rate: 2.5_f64.to_radians(), hand: None, segment: None, duration: 600.0, radius: 0.0 };
+    let rotation = Rotation { rate: 2.5_f64.to_radians(), way: Way::Poles, duration: 600.0, radius: 0.0 };
     let mut random = Random::new(50);
     for _ in 0..3 {
         let warming = judged(&Making { warming: 1e-2, ..ON_A_TABLE }, &rotation, &mut random);
@@ -205,8 +210,8 @@ fn a_unit_that_warms_up_as_it_turns_is_refused() {
 fn ten_thousand_runs_of_rotations() {
     const RUNS: usize = 100;
     let rate = 2.5_f64.to_radians();
-    let table = Rotation { rate, hand: None, segment: None, duration: 600.0, radius: 0.0 };
-    let hand = Rotation { hand: Some(3.0), ..table };
+    let table = Rotation { rate, way: Way::Poles, duration: 600.0, radius: 0.0 };
+    let hand = Rotation { way: Way::Hand(3.0), ..table };
     let white = Making { slow: 0.0, ..ON_A_TABLE };
     let bumped = Making { bumps: 0.5, ..BY_HAND };
     let kinds = [

@@ -40,8 +40,8 @@ impl Choice {
         if calibrations.is_empty() {
             let alike = self.alike();
             let but = if alike.is_empty() { alike } else { format!(" but those of serial {alike}") };
-            let is_asked = [&self.model, &self.serial, &self.station].into_iter().any(Option::is_some);
-            let expected = if is_asked { "results, as --model, --serial and --station ask for" } else { "results" };
+            let asked = "results, as --model, --serial and --station ask for";
+            let expected = if selection.names_any() { asked } else { "results" };
             return Err(self.refuse(format!("no such calibration{but}"), expected));
         }
         Ok(calibrations)

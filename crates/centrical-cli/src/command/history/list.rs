@@ -38,13 +38,13 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
         station: arguments.station.clone(),
         ..Selection::default()
     };
+    let names_any = selection.names_any();
     let list = if arguments.check {
         check_store(&arguments.store, selection, today(), &unwatched)?
     } else {
         list_store(&arguments.store, selection, &unwatched)?
     };
-    let is_asked = [&arguments.model, &arguments.serial, &arguments.station].into_iter().any(Option::is_some);
-    if is_asked && list.calibrations.is_empty() {
+    if names_any && list.calibrations.is_empty() {
         let expected = "a calibration, as --model, --serial and --station ask for";
         return Err(Error::content(&arguments.store, Place::Whole, "no such calibration", expected));
     }

@@ -37,11 +37,11 @@ impl CalibrationResult {
         let (model, fit) = (calibration.data().model(), calibration.fit());
         let budget = calibration.budget()?;
         advance(progress, 0)?;
-        // A scale that may be off by a tenth and more is not determined, whatever the rank.
-        let has_none =
-            |j: &usize| fit.standard_uncertainty(*j).is_some_and(|u| is_vague(model.parameters()[*j].group, u));
-        let covariance = |i, j| fit.covariance(i, j).filter(|_| ![i, j].iter().any(has_none));
         let count = model.parameters().len();
+        // A scale that may be off by a tenth and more is not determined, whatever the rank.
+        let has_none = |j| fit.standard_uncertainty(j).is_some_and(|u| is_vague(model.parameters()[j].group, u));
+        let has_none: Vec<bool> = (0..count).map(has_none).collect();
+        let covariance = |i: usize, j: usize| fit.covariance(i, j).filter(|_| !has_none[i] && !has_none[j]);
         let (validity, rests_on) = if fit.termination == Termination::Linear {
             (None, Vec::new())
         } else {

@@ -118,7 +118,7 @@ fn keys(rows: &[&Row]) -> Vec<String> {
     keys
 }
 
-/// A session before 1980, in days from 1970-01-01: records for programs are later.
+/// First day of 1980, in days from 1970-01-01: no record that programs read is older.
 const EARLIEST: i64 = 3652;
 
 fn day(row: &Row, today: i64) -> Option<Doubt> {

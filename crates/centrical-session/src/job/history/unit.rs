@@ -51,7 +51,7 @@ const PARTS: [f64; 4] = [-1.0, -0.5, 0.5, 1.0];
 /// Readings that are looked at: of three newtonometers at rest, and at forces along three axes.
 const READINGS: usize = 3 * (1 + 3 * PARTS.len());
 
-/// What is expected in place of a day `on` which the limit is to hold, if it is before the last calibration.
+/// What is expected in place of a `day` that a limit is to hold on, or a forecast is of, if it is before the last calibration.
 pub fn expected_day(day: Date, calibrations: &[Calibrated]) -> Option<String> {
     let last = calibrations.last().filter(|last| day < last.date)?;
     Some(format!("{}, the day of the last calibration, or a later one", last.date))

@@ -266,7 +266,12 @@ fn findings(
     let trends = units.iter().zip(series).zip(unit_trends(series, between.variance, FAMILY));
     let findings = trends.filter_map(|(((n, sessions), series), trend)| {
         let (n, trend) = (*n, trend?);
-        let step = series.step().map(|place| [place - 1, place].map(|session| sessions[session].date));
+        // Family-wise a finding is no more probable: what is not found alone is not found.
+        let is_found = trend.drift_probability.min(trend.scatter_probability) < FAMILY;
+        let step = is_found
+            .then(|| series.step())
+            .flatten()
+            .map(|place| [place - 1, place].map(|session| sessions[session].date));
         let finding = |kind, probability| UnitFinding {
             kind,
             unit_serial: lasts[n].unit_serial.clone(),

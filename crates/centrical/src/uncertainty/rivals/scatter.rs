@@ -10,7 +10,7 @@ use crate::statistics::{chi_squared_tail, f_tail};
 pub(in crate::uncertainty) struct Scatter {
     chi_squared: f64,
     degrees_of_freedom: f64,
-    /// Of rests alone, those along the forces, and their expectation.
+    /// Of rests in known attitudes, those along the forces, and their expectation.
     along_forces: Option<(f64, f64)>,
     /// Whether each rest is in a free attitude: its variance is that of the noise which its own record shows.
     is_of_record: bool,
@@ -29,12 +29,14 @@ impl Scatter {
         if data.model().experiment().has_arm() {
             return Ok(all);
         }
+        let gain = calibration.gain()?;
+        if gain.linearisations().iter().all(|at| at.normal.is_some()) {
+            return Ok(Self { is_of_record: true, ..all });
+        }
         // Known attitudes state an uncertainty that hides, across the forces, what a unit does: residuals there would make any scatter look
         // small.
-        let gain = calibration.gain()?;
         let columns = Columns::along_forces(gain, data.observations());
-        let is_of_record = gain.linearisations().iter().all(|at| at.normal.is_some());
-        Ok(Self { along_forces: Some((columns.along.norm_squared(), columns.redundant_length())), is_of_record, ..all })
+        Ok(Self { along_forces: Some((columns.along.norm_squared(), columns.redundant_length())), ..all })
     }
 
     /// What is left where `count` combinations explain `statistic`.
