@@ -3,10 +3,10 @@
 //! - [`Between`]: the component of variance between sessions, beside the uncertainty that each session states.
 //! - [`Series::evolution`]: level, slope, forecast, due date.
 //! - [`Series::step`]: a repair in place of a drift.
-//! - [`sameness`]: all parameters together, with their full covariances.
-//! - [`unit_trends`], [`distances`], [`capability`], [`batch_test`]: units beside each other.
-//! - [`station_test`]: a machine over its sessions.
-//! - [`Control`], [`ewma`], [`cusum`], [`signals`]: control charts.
+//! - [`Sameness`]: all parameters together, with their full covariances.
+//! - [`UnitTrend`], [`UnitSessions::distances`], [`Capability`], [`BatchTest`]: units beside each other.
+//! - [`StationTest`]: a machine over its sessions.
+//! - [`Control`]: control charts.
 //!
 //! Times are in years, values in any unit.
 
@@ -26,16 +26,16 @@ mod succession;
 mod together;
 mod units;
 
-pub use batches::{BatchTest, batch_test};
+pub use batches::BatchTest;
 pub use between::{Between, Likely};
-pub use capability::{Capability, Index, capability};
-pub use chart::{Control, Cusum, Ewma, Rule, cusum, ewma, moving_ranges, signals};
+pub use capability::{Capability, Index};
+pub use chart::{Control, Cusum, Ewma, Rule};
 pub use evolution::{DAYS_IN_YEAR, Estimated, Evolution};
 pub use law::Law;
 pub use line::Curve;
-pub use outlying::{FEWEST_UNITS, UnitDistance, UnitSessions, distances};
+pub use outlying::{UnitDistance, UnitSessions};
 pub use quantiles::Quantiles;
 pub use series::{Point, Series};
-pub use station::{FEWEST_READINGS, Reading, StationTest, station_test};
-pub use together::{FarthestSession, Sameness, SessionEstimates, sameness};
-pub use units::{UnitTrend, unit_trends};
+pub use station::{Reading, StationTest};
+pub use together::{FarthestSession, Sameness, SessionEstimates};
+pub use units::UnitTrend;

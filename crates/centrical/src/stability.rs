@@ -3,17 +3,17 @@
 //! The field's words are those of clocks: "frequency" y is the reading (specific force, m/s^2), "phase" x its
 //! integral (velocity, m/s), tau0 the sampling interval, tau = m tau0 the averaging time.
 //!
-//! [`analyse`] does all of it:
-//! - [`regular_grid`] lays time-stamped readings on a regular grid.
+//! [`Analysis`] does all of it:
+//! - [`Grid`] lays time-stamped readings on a regular grid.
 //! - [`leave_out_spikes`] removes errors of transmission.
 //! - [`Phase::integrate`] makes the phase, and bridges and counts missing readings ([`BridgedGaps`]).
-//! - [`deviations`] gives any [`Estimator`] of the Allan family with chi^2 confidence intervals.
-//! - [`power_spectrum`] gives the spectral density, [`fit_noise_terms`] the terms of IEEE Std 952 and 1293.
+//! - [`Phase::deviations`] gives any [`Estimator`] of the Allan family with chi^2 confidence intervals.
+//! - [`Spectrum`] is the spectral density, [`NoiseTerms`] are the terms of IEEE Std 952 and 1293.
 //!
 //! Source of the estimators: W. J. Riley, "Handbook of Frequency Stability Analysis", NIST Special Publication 1065,
 //! 2008, cited as SP 1065.
 
-mod analyse;
+mod analysis;
 mod degrees_of_freedom;
 mod deviation;
 mod error;
@@ -30,14 +30,13 @@ mod terms;
 mod total;
 mod variance;
 
-pub use analyse::{Analysis, CONFIDENCE, analyse};
-pub use degrees_of_freedom::degrees_of_freedom;
-pub use deviation::{Deviation, deviations};
+pub use analysis::Analysis;
+pub use deviation::Deviation;
 pub use error::NoiseError;
 pub use estimator::Estimator;
-pub use grid::{Grid, regular_grid};
+pub use grid::Grid;
 pub use phase::{BridgedGaps, Phase};
 pub use power_law::PowerLaw;
-pub use spectrum::{Spectrum, SpectrumBand, SpectrumLine, power_spectrum};
-pub use terms::{Coefficient, NoiseTerm, NoiseTerms, fit_noise_terms};
+pub use spectrum::{Spectrum, SpectrumBand, SpectrumLine};
+pub use terms::{Coefficient, NoiseTerm, NoiseTerms};
 pub use variance::RawVariance;

@@ -26,23 +26,25 @@ pub struct Index {
     pub interval: [f64; 2],
 }
 
-/// Capability of `values` between `lower` and `upper`, each optional, with intervals of probability `coverage`.
-/// `None` below two values, without a limit, or without scatter.
-pub fn capability(values: &[f64], lower: Option<f64>, upper: Option<f64>, coverage: f64) -> Option<Capability> {
-    let n = values.len();
-    let nu = n.checked_sub(1).filter(|nu| *nu > 0)? as f64;
-    let mean = values.iter().sum::<f64>() / n as f64;
-    let deviation = (values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / nu).sqrt();
-    let below = lower.map(|lower| (mean - lower) / (3.0 * deviation));
-    let above = upper.map(|upper| (upper - mean) / (3.0 * deviation));
-    let nearer = [below, above].into_iter().flatten().min_by(f64::total_cmp).filter(|index| index.is_finite())?;
-    let law = ChiSquared::new(nu).ok()?;
-    let cp = lower.zip(upper).map(|(lower, upper)| {
-        let value = (upper - lower) / (6.0 * deviation);
-        let at = |probability: f64| value * (law.inverse_cdf(probability) / nu).sqrt();
-        Index { value, interval: [at(0.5 - 0.5 * coverage), at(0.5 + 0.5 * coverage)] }
-    });
-    let doubt = (1.0 / (9.0 * n as f64) + nearer * nearer / (2.0 * nu)).sqrt();
-    let half = coverage_factor(coverage, Degrees::Infinite) * doubt;
-    Some(Capability { mean, deviation, cp, cpk: Index { value: nearer, interval: [nearer - half, nearer + half] } })
+impl Capability {
+    /// Capability of `values` between `lower` and `upper`, each optional, with intervals of probability `coverage`.
+    /// `None` below two values, without a limit, or without scatter.
+    pub fn of(values: &[f64], lower: Option<f64>, upper: Option<f64>, coverage: f64) -> Option<Capability> {
+        let n = values.len();
+        let nu = n.checked_sub(1).filter(|nu| *nu > 0)? as f64;
+        let mean = values.iter().sum::<f64>() / n as f64;
+        let deviation = (values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / nu).sqrt();
+        let below = lower.map(|lower| (mean - lower) / (3.0 * deviation));
+        let above = upper.map(|upper| (upper - mean) / (3.0 * deviation));
+        let nearer = [below, above].into_iter().flatten().min_by(f64::total_cmp).filter(|index| index.is_finite())?;
+        let law = ChiSquared::new(nu).ok()?;
+        let cp = lower.zip(upper).map(|(lower, upper)| {
+            let value = (upper - lower) / (6.0 * deviation);
+            let at = |probability: f64| value * (law.inverse_cdf(probability) / nu).sqrt();
+            Index { value, interval: [at(0.5 - 0.5 * coverage), at(0.5 + 0.5 * coverage)] }
+        });
+        let doubt = (1.0 / (9.0 * n as f64) + nearer * nearer / (2.0 * nu)).sqrt();
+        let half = coverage_factor(coverage, Degrees::Infinite) * doubt;
+        Some(Capability { mean, deviation, cp, cpk: Index { value: nearer, interval: [nearer - half, nearer + half] } })
+    }
 }

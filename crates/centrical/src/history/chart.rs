@@ -22,7 +22,7 @@ impl Control {
     /// From values that were accepted: the mean, and the mean moving range over `d2 = 1.128`. `None` below two values, or when they do
     /// not vary.
     pub fn of(accepted: &[f64]) -> Option<Self> {
-        let ranges = moving_ranges(accepted);
+        let ranges = Self::moving_ranges(accepted);
         let centre = accepted.iter().sum::<f64>() / accepted.len() as f64;
         let deviation = ranges.iter().sum::<f64>() / ranges.len() as f64 / D2;
         (deviation > 0.0 && deviation.is_finite()).then_some(Self { centre, deviation })
@@ -37,11 +37,55 @@ impl Control {
     pub fn range_limit(&self) -> f64 {
         D4 * D2 * self.deviation
     }
-}
 
-/// The size of each step between neighbours.
-pub fn moving_ranges(values: &[f64]) -> Vec<f64> {
-    values.windows(2).map(|pair| (pair[1] - pair[0]).abs()).collect()
+    /// The size of each step between neighbours.
+    pub fn moving_ranges(values: &[f64]) -> Vec<f64> {
+        values.windows(2).map(|pair| (pair[1] - pair[0]).abs()).collect()
+    }
+
+    /// The chart of exponentially weighted means, with `lambda` in (0, 1] and limits of `width` standard deviations; 0.2 and 2.86 give as few false signals as
+    /// limits of three standard deviations of single values (one in 370).
+    pub fn ewma(&self, values: &[f64], lambda: f64, width: f64) -> Ewma {
+        let (mut mean, mut kept) = (self.centre, 1.0);
+        let mut chart = Ewma { means: Vec::new(), half_widths: Vec::new(), signals: Vec::new() };
+        for (i, value) in values.iter().enumerate() {
+            mean += lambda * (value - mean);
+            kept *= (1.0 - lambda).powi(2);
+            let half_width = width * self.deviation * (lambda / (2.0 - lambda) * (1.0 - kept)).sqrt();
+            if (mean - self.centre).abs() > half_width {
+                chart.signals.push(i);
+            }
+            chart.means.push(mean);
+            chart.half_widths.push(half_width);
+        }
+        chart
+    }
+
+    /// The chart of sums, with the reference value `k` and the decision interval `h`, both in standard deviations; 0.5 and 4.77 give one false signal
+    /// in 370.
+    pub fn cusum(&self, values: &[f64], reference: f64, decision: f64) -> Cusum {
+        let mut chart = Cusum { upper: Vec::new(), lower: Vec::new(), signals: Vec::new() };
+        let (mut upper, mut lower) = (0.0_f64, 0.0_f64);
+        for (i, value) in values.iter().enumerate() {
+            let z = (value - self.centre) / self.deviation;
+            upper = (upper + z - reference).max(0.0);
+            lower = (lower - z - reference).max(0.0);
+            if upper.max(lower) > decision {
+                chart.signals.push(i);
+            }
+            chart.upper.push(upper);
+            chart.lower.push(lower);
+        }
+        chart
+    }
+
+    /// Where `rules` give a signal: the index of the last of the values of each, and the rule, in the order of the values.
+    pub fn signals(&self, values: &[f64], rules: &[Rule]) -> Vec<(usize, Rule)> {
+        let z: Vec<f64> = values.iter().map(|value| (value - self.centre) / self.deviation).collect();
+        let at = |i: usize, rule: Rule| (i + 1).checked_sub(rule.span()).is_some_and(|start| rule.holds(&z[start..=i]));
+        let pairs = (0..z.len()).flat_map(|i| rules.iter().map(move |rule| (i, *rule)));
+        pairs.filter(|(i, rule)| at(*i, *rule)).collect()
+    }
 }
 
 /// A chart of exponentially weighted means, `z_i = lambda x_i + (1 - lambda) z_(i-1)` from the centre on.
@@ -55,24 +99,6 @@ pub struct Ewma {
     pub signals: Vec<usize>,
 }
 
-/// The chart with `lambda` in (0, 1] and limits of `width` standard deviations; 0.2 and 2.86 give as few false signals as
-/// limits of three standard deviations of single values (one in 370).
-pub fn ewma(values: &[f64], control: Control, lambda: f64, width: f64) -> Ewma {
-    let (mut mean, mut kept) = (control.centre, 1.0);
-    let mut chart = Ewma { means: Vec::new(), half_widths: Vec::new(), signals: Vec::new() };
-    for (i, value) in values.iter().enumerate() {
-        mean += lambda * (value - mean);
-        kept *= (1.0 - lambda).powi(2);
-        let half_width = width * control.deviation * (lambda / (2.0 - lambda) * (1.0 - kept)).sqrt();
-        if (mean - control.centre).abs() > half_width {
-            chart.signals.push(i);
-        }
-        chart.means.push(mean);
-        chart.half_widths.push(half_width);
-    }
-    chart
-}
-
 /// Sums of deviations beyond a reference, upwards and downwards, in standard deviations.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Cusum {
@@ -82,24 +108,6 @@ pub struct Cusum {
     pub lower: Vec<f64>,
     /// Indices at which either is beyond the decision interval.
     pub signals: Vec<usize>,
-}
-
-/// The chart with the reference value `k` and the decision interval `h`, both in standard deviations; 0.5 and 4.77 give one false signal
-/// in 370.
-pub fn cusum(values: &[f64], control: Control, reference: f64, decision: f64) -> Cusum {
-    let mut chart = Cusum { upper: Vec::new(), lower: Vec::new(), signals: Vec::new() };
-    let (mut upper, mut lower) = (0.0_f64, 0.0_f64);
-    for (i, value) in values.iter().enumerate() {
-        let z = (value - control.centre) / control.deviation;
-        upper = (upper + z - reference).max(0.0);
-        lower = (lower - z - reference).max(0.0);
-        if upper.max(lower) > decision {
-            chart.signals.push(i);
-        }
-        chart.upper.push(upper);
-        chart.lower.push(lower);
-    }
-    chart
 }
 
 /// A rule for single values.
@@ -194,12 +202,4 @@ impl Rule {
             Self::EightBeyond => z.iter().all(|z| z.abs() > 1.0),
         }
     }
-}
-
-/// Where `rules` give a signal: the index of the last of the values of each, and the rule, in the order of the values.
-pub fn signals(values: &[f64], control: Control, rules: &[Rule]) -> Vec<(usize, Rule)> {
-    let z: Vec<f64> = values.iter().map(|value| (value - control.centre) / control.deviation).collect();
-    let at = |i: usize, rule: Rule| (i + 1).checked_sub(rule.span()).is_some_and(|start| rule.holds(&z[start..=i]));
-    let pairs = (0..z.len()).flat_map(|i| rules.iter().map(move |rule| (i, *rule)));
-    pairs.filter(|(i, rule)| at(*i, *rule)).collect()
 }

@@ -37,29 +37,31 @@ pub struct UnitDistance {
     pub scores: Vec<f64>,
 }
 
-/// Fewer units give no law.
-pub const FEWEST_UNITS: usize = 10;
+impl UnitSessions<'_> {
+    /// Fewer units give no law.
+    pub const FEWEST_UNITS: usize = 10;
 
-/// The distances of units by their `sessions`; `None` below [`FEWEST_UNITS`], or where a parameter does not vary. The same `seed` gives the
-/// same probabilities on any number of threads.
-pub fn distances(sessions: &UnitSessions, seed: u64) -> Option<Vec<UnitDistance>> {
-    if sessions.counts.len() < FEWEST_UNITS {
-        return None;
+    /// The distances of units by their sessions; `None` below [`Self::FEWEST_UNITS`], or where a parameter does not vary. The same `seed` gives the
+    /// same probabilities on any number of threads.
+    pub fn distances(&self, seed: u64) -> Option<Vec<UnitDistance>> {
+        if self.counts.len() < Self::FEWEST_UNITS {
+            return None;
+        }
+        let means = UnitMeans::of(self);
+        let add_errors = |unit: usize, weight: f64, sum: &mut DMatrix<f64>| means.add_errors(self, unit, weight, sum);
+        let units = Rows { values: means.values.clone(), variances: means.variances.clone(), add_errors: &add_errors };
+        let known = Known::of(units.values.nrows(), units.values.ncols())?;
+        let found = Component::of(&units, &known)?;
+        let squares = found.squared_distances(&units)?;
+        let probability = largest_law(&units, &found, &known, seed)?;
+        let scores = found.scores(&units);
+        let distance = |(unit, square): (usize, &f64)| UnitDistance {
+            distance: square.sqrt(),
+            probability: probability(*square),
+            scores: scores.row(unit).iter().copied().collect(),
+        };
+        Some(squares.iter().enumerate().map(distance).collect())
     }
-    let means = UnitMeans::of(sessions);
-    let add_errors = |unit: usize, weight: f64, sum: &mut DMatrix<f64>| means.add_errors(sessions, unit, weight, sum);
-    let units = Rows { values: means.values.clone(), variances: means.variances.clone(), add_errors: &add_errors };
-    let known = Known::of(units.values.nrows(), units.values.ncols())?;
-    let found = Component::of(&units, &known)?;
-    let squares = found.squared_distances(&units)?;
-    let probability = largest_law(&units, &found, &known, seed)?;
-    let scores = found.scores(&units);
-    let distance = |(unit, square): (usize, &f64)| UnitDistance {
-        distance: square.sqrt(),
-        probability: probability(*square),
-        scores: scores.row(unit).iter().copied().collect(),
-    };
-    Some(squares.iter().enumerate().map(distance).collect())
 }
 
 /// The probability that the largest squared distance of sound units is as large.

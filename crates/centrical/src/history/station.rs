@@ -70,38 +70,40 @@ impl StationTest {
 /// Part of the squared spread of times without which a slope has more than twice its uncertainty.
 const LEAST_SPREAD: f64 = 0.25;
 
-/// Fewer readings that count give no tests.
-pub const FEWEST_READINGS: usize = 8;
+impl StationTest {
+    /// Fewer readings that count give no tests.
+    pub const FEWEST_READINGS: usize = 8;
 
-/// The tests of `readings`; `None` below [`FEWEST_READINGS`] of them, or where neither times nor values vary.
-pub fn station_test(readings: &[Reading]) -> Option<StationTest> {
-    let Deviations { instants, times, values, groups, means } = Deviations::of(readings);
-    let nu = times.len().checked_sub(means + 1).filter(|_| times.len() >= FEWEST_READINGS)?;
-    let spread: f64 = times.iter().map(|t| t * t).sum();
-    let slope = times.iter().zip(&values).map(|(t, v)| t * v).sum::<f64>() / spread;
-    let rest: f64 = times.iter().zip(&values).map(|(t, v)| (v - slope * t).powi(2)).sum();
-    let standard_uncertainty = (rest / nu as f64 / spread).sqrt();
-    let law = StudentsT::new(0.0, 1.0, nu as f64).ok().filter(|_| standard_uncertainty > 0.0)?;
-    let change = largest_change(&values, means)?;
-    let (before, after) = values.split_at(change.after);
-    let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
-    let middle = mean(&instants);
-    let all: f64 = instants.iter().map(|t| (t - middle).powi(2)).sum();
-    let farthest = farthest(&values, means)?;
-    Some(StationTest {
-        slope,
-        standard_uncertainty,
-        degrees_of_freedom: nu,
-        slope_probability: 2.0 * law.cdf(-(slope / standard_uncertainty).abs()),
-        changed_after: instants[change.after - 1],
-        change: mean(after) - mean(before),
-        change_probability: change.probability,
-        farthest: instants[farthest.place],
-        distance: values[farthest.place],
-        farthest_probability: farthest.probability,
-        succession_probability: succession_probability(&values, &groups)?,
-        remaining_spread: spread / all,
-    })
+    /// The tests of `readings`; `None` below [`Self::FEWEST_READINGS`] of them, or where neither times nor values vary.
+    pub fn of(readings: &[Reading]) -> Option<StationTest> {
+        let Deviations { instants, times, values, groups, means } = Deviations::of(readings);
+        let nu = times.len().checked_sub(means + 1).filter(|_| times.len() >= Self::FEWEST_READINGS)?;
+        let spread: f64 = times.iter().map(|t| t * t).sum();
+        let slope = times.iter().zip(&values).map(|(t, v)| t * v).sum::<f64>() / spread;
+        let rest: f64 = times.iter().zip(&values).map(|(t, v)| (v - slope * t).powi(2)).sum();
+        let standard_uncertainty = (rest / nu as f64 / spread).sqrt();
+        let law = StudentsT::new(0.0, 1.0, nu as f64).ok().filter(|_| standard_uncertainty > 0.0)?;
+        let change = largest_change(&values, means)?;
+        let (before, after) = values.split_at(change.after);
+        let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
+        let middle = mean(&instants);
+        let all: f64 = instants.iter().map(|t| (t - middle).powi(2)).sum();
+        let farthest = farthest(&values, means)?;
+        Some(StationTest {
+            slope,
+            standard_uncertainty,
+            degrees_of_freedom: nu,
+            slope_probability: 2.0 * law.cdf(-(slope / standard_uncertainty).abs()),
+            changed_after: instants[change.after - 1],
+            change: mean(after) - mean(before),
+            change_probability: change.probability,
+            farthest: instants[farthest.place],
+            distance: values[farthest.place],
+            farthest_probability: farthest.probability,
+            succession_probability: succession_probability(&values, &groups)?,
+            remaining_spread: spread / all,
+        })
+    }
 }
 
 /// The readings that can show a change, in the order of time.

@@ -43,59 +43,61 @@ pub struct FarthestSession {
     pub probability_by_scatter: f64,
 }
 
-/// The joint test of sessions; `None` below two sessions, where all quantities are of one session each, or where a covariance is not positive
-/// definite.
-///
-/// `quantities` has for each session the numbers of the quantities that its values are of, `0..p`, each of two sessions or more. `shared` has a
-/// matrix for each session: the changes of its values by errors that some sessions share, a column for each of `m` independent errors at one
-/// standard uncertainty, zero where a session does not have it. They are unknowns, each `0 +- 1`.
-pub fn sameness(sessions: &[SessionEstimates], quantities: &[Vec<usize>], shared: &[DMatrix<f64>]) -> Option<Sameness> {
-    let p = 1 + *quantities.iter().flatten().max()?;
-    let m = shared.first().map_or(0, DMatrix::ncols);
-    let blocks = blocks(sessions);
-    let rows = blocks.last()?.end;
-    let (mut design, mut values) = (DMatrix::zeros(rows + m, p + m), DVector::zeros(rows + m));
-    design.view_mut((rows, p), (m, m)).fill_with_identity();
-    let sizes = sizes(sessions, quantities, p);
-    for (n, session) in sessions.iter().enumerate() {
-        // Rows of C = D R D with the correlations R: `R = L L^T`, whitened by `L^-1 D^-1`.
-        let (block, count) = (&blocks[n], blocks[n].len());
-        let scale = session.covariance.diagonal().map(|v| 1.0 / v.sqrt());
-        let correlation = DMatrix::from_fn(count, count, |i, j| session.covariance[(i, j)] * scale[i] * scale[j]);
-        let factor = correlation.cholesky()?.unpack();
-        let mut unknowns = DMatrix::zeros(count, p);
-        for (i, &quantity) in quantities[n].iter().enumerate() {
-            unknowns[(i, quantity)] = sizes[quantity] * scale[i];
+impl Sameness {
+    /// The joint test of sessions; `None` below two sessions, where all quantities are of one session each, or where a covariance is not positive
+    /// definite.
+    ///
+    /// `quantities` has for each session the numbers of the quantities that its values are of, `0..p`, each of two sessions or more. `shared` has a
+    /// matrix for each session: the changes of its values by errors that some sessions share, a column for each of `m` independent errors at one
+    /// standard uncertainty, zero where a session does not have it. They are unknowns, each `0 +- 1`.
+    pub fn of(sessions: &[SessionEstimates], quantities: &[Vec<usize>], shared: &[DMatrix<f64>]) -> Option<Sameness> {
+        let p = 1 + *quantities.iter().flatten().max()?;
+        let m = shared.first().map_or(0, DMatrix::ncols);
+        let blocks = blocks(sessions);
+        let rows = blocks.last()?.end;
+        let (mut design, mut values) = (DMatrix::zeros(rows + m, p + m), DVector::zeros(rows + m));
+        design.view_mut((rows, p), (m, m)).fill_with_identity();
+        let sizes = sizes(sessions, quantities, p);
+        for (n, session) in sessions.iter().enumerate() {
+            // Rows of C = D R D with the correlations R: `R = L L^T`, whitened by `L^-1 D^-1`.
+            let (block, count) = (&blocks[n], blocks[n].len());
+            let scale = session.covariance.diagonal().map(|v| 1.0 / v.sqrt());
+            let correlation = DMatrix::from_fn(count, count, |i, j| session.covariance[(i, j)] * scale[i] * scale[j]);
+            let factor = correlation.cholesky()?.unpack();
+            let mut unknowns = DMatrix::zeros(count, p);
+            for (i, &quantity) in quantities[n].iter().enumerate() {
+                unknowns[(i, quantity)] = sizes[quantity] * scale[i];
+            }
+            let whitened = session.values.component_mul(&scale);
+            design.view_mut((block.start, 0), (count, p)).copy_from(&factor.solve_lower_triangular(&unknowns)?);
+            if let Some(shared) = shared.get(n) {
+                let scaled = DMatrix::from_diagonal(&scale) * shared;
+                design.view_mut((block.start, p), (count, m)).copy_from(&factor.solve_lower_triangular(&scaled)?);
+            }
+            values.rows_mut(block.start, count).copy_from(&factor.solve_lower_triangular(&whitened)?);
         }
-        let whitened = session.values.component_mul(&scale);
-        design.view_mut((block.start, 0), (count, p)).copy_from(&factor.solve_lower_triangular(&unknowns)?);
-        if let Some(shared) = shared.get(n) {
-            let scaled = DMatrix::from_diagonal(&scale) * shared;
-            design.view_mut((block.start, p), (count, m)).copy_from(&factor.solve_lower_triangular(&scaled)?);
-        }
-        values.rows_mut(block.start, count).copy_from(&factor.solve_lower_triangular(&whitened)?);
+        let degrees_of_freedom = rows.checked_sub(p).filter(|rest| *rest > 0)?;
+        let equations = LeastSquares::new(design, sizes.resize_vertically(p + m, 1.0));
+        let chi_squared = equations.redundant(&values).norm_squared();
+        let probability = chi_squared_tail(chi_squared, degrees_of_freedom);
+        // Of two sessions each is as far from the other.
+        let farthest = if sessions.len() > 2 {
+            farthest(&equations, &values.rows(0, rows).into_owned(), &blocks, degrees_of_freedom)
+        } else {
+            None
+        };
+        let any = |chance: f64| (sessions.len() as f64 * chance).min(1.0);
+        let farthest = farthest.map(|(session, fall)| {
+            let (rest, of_others) = ((chi_squared - fall).max(0.0), sessions.len() - 2);
+            FarthestSession {
+                session,
+                probability: any(chi_squared_tail(fall, blocks[session].len())),
+                probability_of_others: chi_squared_tail(rest, degrees_of_freedom - blocks[session].len()),
+                probability_by_scatter: any(f_tail(fall * of_others as f64 / rest, 1, of_others)),
+            }
+        });
+        Some(Sameness { chi_squared, degrees_of_freedom, probability, farthest })
     }
-    let degrees_of_freedom = rows.checked_sub(p).filter(|rest| *rest > 0)?;
-    let equations = LeastSquares::new(design, sizes.resize_vertically(p + m, 1.0));
-    let chi_squared = equations.redundant(&values).norm_squared();
-    let probability = chi_squared_tail(chi_squared, degrees_of_freedom);
-    // Of two sessions each is as far from the other.
-    let farthest = if sessions.len() > 2 {
-        farthest(&equations, &values.rows(0, rows).into_owned(), &blocks, degrees_of_freedom)
-    } else {
-        None
-    };
-    let any = |chance: f64| (sessions.len() as f64 * chance).min(1.0);
-    let farthest = farthest.map(|(session, fall)| {
-        let (rest, of_others) = ((chi_squared - fall).max(0.0), sessions.len() - 2);
-        FarthestSession {
-            session,
-            probability: any(chi_squared_tail(fall, blocks[session].len())),
-            probability_of_others: chi_squared_tail(rest, degrees_of_freedom - blocks[session].len()),
-            probability_by_scatter: any(f_tail(fall * of_others as f64 / rest, 1, of_others)),
-        }
-    });
-    Some(Sameness { chi_squared, degrees_of_freedom, probability, farthest })
 }
 
 /// The equations of each session.

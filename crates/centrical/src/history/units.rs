@@ -20,43 +20,46 @@ pub struct UnitTrend {
     pub scatter_probability: f64,
 }
 
-/// The slope of each unit in one quantity, against the scatter about the lines of all units; `None` for a unit whose sessions do not
-/// determine a line, and for all where fewer than two can be compared.
-///
-/// Every unit is weighted as its sessions state, with a component between sessions common to all. A unit that scatters more than
-/// the others by itself, at `level`, is left out of their scatter.
-pub fn unit_trends(units: &[Series], variance_between: f64, level: f64) -> Vec<Option<UnitTrend>> {
-    let of = |series: &Series| {
-        let line = Line::new(series.points(), Curve::Line, variance_between)?;
-        let nu = series.points().len().checked_sub(2).filter(|nu| *nu > 0)?;
-        Some((line, nu as f64))
-    };
-    let lines: Vec<Option<(Line, f64)>> = units.iter().map(of).collect();
-    let sums = |lines: &mut dyn Iterator<Item = &(Line, f64)>| {
-        lines.fold((0.0, 0.0), |(misfit, nu), (line, more)| (misfit + line.misfit, nu + more))
-    };
-    let all = sums(&mut lines.iter().flatten());
-    let count = lines.iter().flatten().count() as f64;
-    let scatter = |(line, nu): &(Line, f64), (misfit, freedom): (f64, f64)| {
-        let (others, rest) = (misfit - line.misfit, freedom - nu);
-        let ratio = (line.misfit / nu) / (others / rest);
-        let law = FisherSnedecor::new(*nu, rest).ok()?;
-        ratio.is_finite().then(|| (ratio, law.sf(ratio)))
-    };
-    let is_sound = |line: &&(Line, f64)| scatter(line, all).is_none_or(|(_, probability)| count * probability > level);
-    let (misfit, freedom) = sums(&mut lines.iter().flatten().filter(is_sound));
-    let trend = |line: &(Line, f64)| {
-        let (variance_ratio, scatter_probability) = scatter(line, all)?;
-        let law = StudentsT::new(0.0, 1.0, freedom).ok()?;
-        let standard_uncertainty = (misfit / freedom / line.0.spread).sqrt();
-        let drift_probability = 2.0 * law.cdf(-(line.0.slope / standard_uncertainty).abs());
-        Some(UnitTrend {
-            slope: line.0.slope,
-            standard_uncertainty,
-            drift_probability,
-            variance_ratio,
-            scatter_probability,
-        })
-    };
-    lines.iter().map(|line| line.as_ref().and_then(trend)).collect()
+impl UnitTrend {
+    /// The slope of each unit in one quantity, against the scatter about the lines of all units; `None` for a unit whose sessions do not
+    /// determine a line, and for all where fewer than two can be compared.
+    ///
+    /// Every unit is weighted as its sessions state, with a component between sessions common to all. A unit that scatters more than
+    /// the others by itself, at `level`, is left out of their scatter.
+    pub fn of_all(units: &[Series], variance_between: f64, level: f64) -> Vec<Option<UnitTrend>> {
+        let of = |series: &Series| {
+            let line = Line::new(series.points(), Curve::Line, variance_between)?;
+            let nu = series.points().len().checked_sub(2).filter(|nu| *nu > 0)?;
+            Some((line, nu as f64))
+        };
+        let lines: Vec<Option<(Line, f64)>> = units.iter().map(of).collect();
+        let sums = |lines: &mut dyn Iterator<Item = &(Line, f64)>| {
+            lines.fold((0.0, 0.0), |(misfit, nu), (line, more)| (misfit + line.misfit, nu + more))
+        };
+        let all = sums(&mut lines.iter().flatten());
+        let count = lines.iter().flatten().count() as f64;
+        let scatter = |(line, nu): &(Line, f64), (misfit, freedom): (f64, f64)| {
+            let (others, rest) = (misfit - line.misfit, freedom - nu);
+            let ratio = (line.misfit / nu) / (others / rest);
+            let law = FisherSnedecor::new(*nu, rest).ok()?;
+            ratio.is_finite().then(|| (ratio, law.sf(ratio)))
+        };
+        let is_sound =
+            |line: &&(Line, f64)| scatter(line, all).is_none_or(|(_, probability)| count * probability > level);
+        let (misfit, freedom) = sums(&mut lines.iter().flatten().filter(is_sound));
+        let trend = |line: &(Line, f64)| {
+            let (variance_ratio, scatter_probability) = scatter(line, all)?;
+            let law = StudentsT::new(0.0, 1.0, freedom).ok()?;
+            let standard_uncertainty = (misfit / freedom / line.0.spread).sqrt();
+            let drift_probability = 2.0 * law.cdf(-(line.0.slope / standard_uncertainty).abs());
+            Some(UnitTrend {
+                slope: line.0.slope,
+                standard_uncertainty,
+                drift_probability,
+                variance_ratio,
+                scatter_probability,
+            })
+        };
+        lines.iter().map(|line| line.as_ref().and_then(trend)).collect()
+    }
 }

@@ -12,25 +12,27 @@ use super::power_law::PowerLaw;
 /// Sums longer than this are replaced by their limits [GR, section on the evaluation].
 const J_MAX: usize = 100;
 
-/// Equivalent degrees of freedom of an estimator at averaging factor `m` on `points` gapless phase points, if
-/// their noise follows `law`. A factor too long for the record counts as one term.
-pub fn degrees_of_freedom(estimator: Estimator, law: PowerLaw, m: usize, points: usize) -> f64 {
-    let span = points as f64 / m as f64;
-    let difference = |modified, overlapping| {
-        Differences { alpha: law.alpha(), d: estimator.order(), m, modified, overlapping }.degrees_of_freedom(points)
-    };
-    match (estimator, law) {
-        (Estimator::Allan | Estimator::Hadamard, _) => difference(false, false),
-        (Estimator::Total, PowerLaw::White) => 1.5 * span,
-        (Estimator::Total, PowerLaw::Flicker) => 1.17 * span - 0.22,
-        (Estimator::Total, PowerLaw::RandomWalk) => 0.93 * span - 0.36,
-        (Estimator::ModifiedTotal | Estimator::TimeTotal, _) if m >= SHORTEST_TOTAL => modified_total(law, span),
-        (Estimator::HadamardTotal, _) if m >= SHORTEST_TOTAL && law <= PowerLaw::White => hadamard_total(law, span),
-        // Where the totals have no formula they have at least the degrees of freedom of the estimators they improve on.
-        (Estimator::ModifiedAllan | Estimator::Time | Estimator::ModifiedTotal | Estimator::TimeTotal, _) => {
-            difference(true, true)
+impl Estimator {
+    /// Equivalent degrees of freedom of the estimator at averaging factor `m` on `points` gapless phase points, if
+    /// their noise follows `law`. A factor too long for the record counts as one term.
+    pub fn degrees_of_freedom(self, law: PowerLaw, m: usize, points: usize) -> f64 {
+        let span = points as f64 / m as f64;
+        let difference = |modified, overlapping| {
+            Differences { alpha: law.alpha(), d: self.order(), m, modified, overlapping }.degrees_of_freedom(points)
+        };
+        match (self, law) {
+            (Estimator::Allan | Estimator::Hadamard, _) => difference(false, false),
+            (Estimator::Total, PowerLaw::White) => 1.5 * span,
+            (Estimator::Total, PowerLaw::Flicker) => 1.17 * span - 0.22,
+            (Estimator::Total, PowerLaw::RandomWalk) => 0.93 * span - 0.36,
+            (Estimator::ModifiedTotal | Estimator::TimeTotal, _) if m >= SHORTEST_TOTAL => modified_total(law, span),
+            (Estimator::HadamardTotal, _) if m >= SHORTEST_TOTAL && law <= PowerLaw::White => hadamard_total(law, span),
+            // Where the totals have no formula they have at least the degrees of freedom of the estimators they improve on.
+            (Estimator::ModifiedAllan | Estimator::Time | Estimator::ModifiedTotal | Estimator::TimeTotal, _) => {
+                difference(true, true)
+            }
+            _ => difference(false, true),
         }
-        _ => difference(false, true),
     }
 }
 

@@ -2,7 +2,6 @@
 
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
-use super::degrees_of_freedom::degrees_of_freedom;
 use super::error::NoiseError;
 use super::estimator::Estimator;
 use super::phase::Phase;
@@ -34,56 +33,58 @@ pub struct Deviation {
     pub bias: f64,
 }
 
-/// The deviations of the record at the averaging factors `factors`, with intervals at the level `confidence`
-/// (0.683 for one standard deviation).
-///
-/// The true variance is within `edf s^2 / chi^2_(1-p) .. edf s^2 / chi^2_p`, p = (1 - confidence) / 2 [SP 1065,
-/// eq. 45]. Degrees of freedom and bias follow from the power law, which is that of the next shorter tau unless
-/// another is shown, white at first; gaps cost freedom in proportion to the terms they cost. Factors too long for the
-/// record are left out of the answer. `progress` is asked again and again.
-///
-/// # Errors
-/// [`NoiseError::BadConfidence`], or [`NoiseError::Stopped`].
-pub fn deviations(
-    phase: &Phase,
-    estimator: Estimator,
-    factors: &[usize],
-    confidence: f64,
-    progress: OnProgress<()>,
-) -> Result<Vec<Deviation>, NoiseError> {
-    if !(confidence > 0.0 && confidence < 1.0) {
-        return Err(NoiseError::BadConfidence { found: confidence });
+impl Phase {
+    /// The deviations of the record at the averaging factors `factors`, with intervals at the level `confidence`
+    /// (0.683 for one standard deviation).
+    ///
+    /// The true variance is within `edf s^2 / chi^2_(1-p) .. edf s^2 / chi^2_p`, p = (1 - confidence) / 2 [SP 1065,
+    /// eq. 45]. Degrees of freedom and bias follow from the power law, which is that of the next shorter tau unless
+    /// another is shown, white at first; gaps cost freedom in proportion to the terms they cost. Factors too long for the
+    /// record are left out of the answer. `progress` is asked again and again.
+    ///
+    /// # Errors
+    /// [`NoiseError::BadConfidence`], or [`NoiseError::Stopped`].
+    pub fn deviations(
+        &self,
+        estimator: Estimator,
+        factors: &[usize],
+        confidence: f64,
+        progress: OnProgress<()>,
+    ) -> Result<Vec<Deviation>, NoiseError> {
+        if !(confidence > 0.0 && confidence < 1.0) {
+            return Err(NoiseError::BadConfidence { found: confidence });
+        }
+        let mut factors = factors.to_vec();
+        factors.sort_unstable();
+        factors.dedup();
+        let watch = Watch::new(progress);
+        let mut followed = FollowedLaw::new(estimator.order());
+        let mut deviations = Vec::with_capacity(factors.len());
+        for m in factors {
+            let raw = watch.found(estimator.watched_variance(self, m, &watch))?;
+            let Some(raw) = raw else { continue };
+            let (law, is_identified) = followed.at(self, m);
+            let points = self.points().len();
+            let bias = bias(estimator, law, m, points);
+            let share = raw.terms as f64 / raw.possible as f64;
+            let freedom = share * estimator.degrees_of_freedom(law, m, points);
+            let value = (raw.value / bias).sqrt();
+            let (lower, upper) = interval(value, freedom, confidence);
+            deviations.push(Deviation {
+                factor: m,
+                tau: m as f64 * self.tau0(),
+                value,
+                lower,
+                upper,
+                terms: raw.terms,
+                degrees_of_freedom: freedom,
+                law,
+                is_identified,
+                bias,
+            });
+        }
+        Ok(deviations)
     }
-    let mut factors = factors.to_vec();
-    factors.sort_unstable();
-    factors.dedup();
-    let watch = Watch::new(progress);
-    let mut followed = FollowedLaw::new(estimator.order());
-    let mut deviations = Vec::with_capacity(factors.len());
-    for m in factors {
-        let raw = watch.found(estimator.watched_variance(phase, m, &watch))?;
-        let Some(raw) = raw else { continue };
-        let (law, is_identified) = followed.at(phase, m);
-        let points = phase.points().len();
-        let bias = bias(estimator, law, m, points);
-        let share = raw.terms as f64 / raw.possible as f64;
-        let freedom = share * degrees_of_freedom(estimator, law, m, points);
-        let value = (raw.value / bias).sqrt();
-        let (lower, upper) = interval(value, freedom, confidence);
-        deviations.push(Deviation {
-            factor: m,
-            tau: m as f64 * phase.tau0(),
-            value,
-            lower,
-            upper,
-            terms: raw.terms,
-            degrees_of_freedom: freedom,
-            law,
-            is_identified,
-            bias,
-        });
-    }
-    Ok(deviations)
 }
 
 fn interval(value: f64, freedom: f64, confidence: f64) -> (f64, f64) {

@@ -15,31 +15,33 @@ pub struct Grid {
     pub repeated: usize,
 }
 
-/// Lays the readings `y`, taken at the times `t` (s), on a regular grid.
-///
-/// The interval is first the median step; every step counts for the nearest whole number of intervals (a step of
-/// less than half an interval is a repeated sample, which is dropped); then the interval is refined to the mean over
-/// the span, so a step printed with few digits does not drift off the grid. Non-finite readings are missing ones. `progress` is asked
-/// again and again.
-///
-/// # Errors
-/// [`NoiseError`] if `t` and `y` differ in length, hold fewer than 3 samples, `t` is not finite or runs backwards,
-/// or fewer than half of the spanned grid points have a sample; [`NoiseError::Stopped`].
-pub fn regular_grid(t: &[f64], y: &[f64], progress: OnProgress<()>) -> Result<Grid, NoiseError> {
-    check(t, y)?;
-    let mut steps: Vec<f64> = t.windows(2).map(|pair| pair[1] - pair[0]).filter(|&step| step > 0.0).collect();
-    let step = watched_median(&mut steps, progress)?;
-    let (places, repeated) = places(t, step, progress)?;
-    let span = places.last().map_or(0, |&(place, _)| place + 1);
-    if span > 2 * places.len() {
-        return Err(NoiseError::MostlyMissing { found: places.len(), span });
+impl Grid {
+    /// Lays the readings `y`, taken at the times `t` (s), on a regular grid.
+    ///
+    /// The interval is first the median step; every step counts for the nearest whole number of intervals (a step of
+    /// less than half an interval is a repeated sample, which is dropped); then the interval is refined to the mean over
+    /// the span, so a step printed with few digits does not drift off the grid. Non-finite readings are missing ones. `progress` is asked
+    /// again and again.
+    ///
+    /// # Errors
+    /// [`NoiseError`] if `t` and `y` differ in length, hold fewer than 3 samples, `t` is not finite or runs backwards,
+    /// or fewer than half of the spanned grid points have a sample; [`NoiseError::Stopped`].
+    pub fn of(t: &[f64], y: &[f64], progress: OnProgress<()>) -> Result<Grid, NoiseError> {
+        check(t, y)?;
+        let mut steps: Vec<f64> = t.windows(2).map(|pair| pair[1] - pair[0]).filter(|&step| step > 0.0).collect();
+        let step = watched_median(&mut steps, progress)?;
+        let (places, repeated) = places(t, step, progress)?;
+        let span = places.last().map_or(0, |&(place, _)| place + 1);
+        if span > 2 * places.len() {
+            return Err(NoiseError::MostlyMissing { found: places.len(), span });
+        }
+        let mut readings = vec![f64::NAN; span];
+        for &(place, sample) in &places {
+            readings[place] = y[sample];
+        }
+        let interval = places.last().map_or(step, |&(place, sample)| (t[sample] - t[0]) / place as f64);
+        Ok(Grid { interval, readings, repeated })
     }
-    let mut readings = vec![f64::NAN; span];
-    for &(place, sample) in &places {
-        readings[place] = y[sample];
-    }
-    let interval = places.last().map_or(step, |&(place, sample)| (t[sample] - t[0]) / place as f64);
-    Ok(Grid { interval, readings, repeated })
 }
 
 fn check(t: &[f64], y: &[f64]) -> Result<(), NoiseError> {
@@ -88,7 +90,7 @@ mod tests {
     #[test]
     fn missing_samples_are_marked_and_repeated_ones_dropped() {
         let t = [0.0, 0.1, 0.2, 0.2, 0.5, 0.6, 0.70001];
-        let grid = regular_grid(&t, &[1.0, 2.0, 3.0, 9.0, 6.0, 7.0, 8.0], &unwatched).unwrap();
+        let grid = Grid::of(&t, &[1.0, 2.0, 3.0, 9.0, 6.0, 7.0, 8.0], &unwatched).unwrap();
         assert_eq!(grid.repeated, 1);
         assert_eq!(grid.readings.len(), 8);
         assert!(grid.readings[3].is_nan() && grid.readings[4].is_nan());
@@ -100,16 +102,16 @@ mod tests {
     fn a_step_printed_with_few_digits_does_not_drift() {
         // 3 kHz printed to 0.1 ms: a median step of 0.3 ms would lose a tenth of the grid points.
         let t: Vec<f64> = (0..30_000).map(|i| (f64::from(i) / 3000.0 * 1e4).round() / 1e4).collect();
-        let grid = regular_grid(&t, &vec![0.5; t.len()], &unwatched).unwrap();
+        let grid = Grid::of(&t, &vec![0.5; t.len()], &unwatched).unwrap();
         assert_eq!(grid.readings.len(), 30_000);
         assert!((grid.interval * 3000.0 - 1.0).abs() < 1e-5);
     }
 
     #[test]
     fn errors_name_the_sample() {
-        let error = regular_grid(&[0.0, 0.2, 0.1], &[0.0; 3], &unwatched).unwrap_err();
+        let error = Grid::of(&[0.0, 0.2, 0.1], &[0.0; 3], &unwatched).unwrap_err();
         assert_eq!(error.to_string(), "sample 2: found time 0.1 s after 0.2 s, expected an increasing time");
-        assert!(regular_grid(&[0.0, 0.1], &[0.0; 2], &unwatched).is_err());
-        assert!(regular_grid(&[0.0, 0.1, 0.2, 99.0], &[0.0; 4], &unwatched).is_err());
+        assert!(Grid::of(&[0.0, 0.1], &[0.0; 2], &unwatched).is_err());
+        assert!(Grid::of(&[0.0, 0.1, 0.2, 99.0], &[0.0; 4], &unwatched).is_err());
     }
 }

@@ -108,73 +108,70 @@ impl Spectrum {
     }
 }
 
-/// Power spectral density of readings taken every `tau0` seconds, by Welch's method: Hann windows of `length`
-/// readings, half overlapping, each less its mean, averaged.
-///
-/// `S(f_k) = 2 tau0 / (K sum w^2) sum_segments |sum_j w_j y_j exp(-2 pi i j k / L)|^2`, half that at both ends.
-/// A reading that is not finite is missing and counts as the segment's mean; the density is scaled by the share of
-/// the window that is left, and a segment with more than a tenth missing is skipped.
-///
-/// Degrees of freedom: `2 K / (1 + 2 rho^2 (K - 1) / K)`, rho = 1/6 the correlation of neighbouring windows for
-/// white readings (P. D. Welch, IEEE Trans. Audio Electroacoust. 15, 1967). K counts segments side by side; runs
-/// broken by gaps only add freedom. `progress` is asked at each segment.
-///
-/// # Errors
-/// [`NoiseError`] if `tau0` is not positive, `length` is below 8, or no segment of that length is whole enough;
-/// [`NoiseError::Stopped`].
-pub fn power_spectrum(
-    readings: &[f64],
-    tau0: f64,
-    length: usize,
-    progress: OnProgress<()>,
-) -> Result<Spectrum, NoiseError> {
-    const SHORTEST: usize = 8;
-    const OVERLAP_CORRELATION: f64 = 1.0 / 6.0;
-    if !(tau0.is_finite() && tau0 > 0.0) {
-        return Err(NoiseError::BadInterval { found: tau0 });
-    }
-    if length < SHORTEST {
-        return Err(NoiseError::TooShort { found: length, expected: SHORTEST });
-    }
-    let window = hann(length);
-    let mut density = vec![0.0; length / 2 + 1];
-    let (mut segments, mut skipped) = (0_usize, 0);
-    let transform = RealFftPlanner::<f64>::new().plan_fft_forward(length);
-    let mut output = transform.make_output_vec();
-    for start in (0..=readings.len().saturating_sub(length)).step_by(length / 2) {
-        advance(progress, ())?;
-        let Some((mut segment, power)) =
-            readings.get(start..start + length).and_then(|segment| windowed(segment, &window))
-        else {
-            skipped += 1;
-            continue;
-        };
-        // Lengths agree by construction, so the transform cannot fail.
-        if transform.process(&mut segment, &mut output).is_ok() {
-            density.iter_mut().zip(&output).for_each(|(sum, z)| *sum += z.norm_sqr() / power);
-            segments += 1;
+impl Spectrum {
+    /// Power spectral density of readings taken every `tau0` seconds, by Welch's method: Hann windows of `length`
+    /// readings, half overlapping, each less its mean, averaged.
+    ///
+    /// `S(f_k) = 2 tau0 / (K sum w^2) sum_segments |sum_j w_j y_j exp(-2 pi i j k / L)|^2`, half that at both ends.
+    /// A reading that is not finite is missing and counts as the segment's mean; the density is scaled by the share of
+    /// the window that is left, and a segment with more than a tenth missing is skipped.
+    ///
+    /// Degrees of freedom: `2 K / (1 + 2 rho^2 (K - 1) / K)`, rho = 1/6 the correlation of neighbouring windows for
+    /// white readings (P. D. Welch, IEEE Trans. Audio Electroacoust. 15, 1967). K counts segments side by side; runs
+    /// broken by gaps only add freedom. `progress` is asked at each segment.
+    ///
+    /// # Errors
+    /// [`NoiseError`] if `tau0` is not positive, `length` is below 8, or no segment of that length is whole enough;
+    /// [`NoiseError::Stopped`].
+    pub fn of(readings: &[f64], tau0: f64, length: usize, progress: OnProgress<()>) -> Result<Spectrum, NoiseError> {
+        const SHORTEST: usize = 8;
+        const OVERLAP_CORRELATION: f64 = 1.0 / 6.0;
+        if !(tau0.is_finite() && tau0 > 0.0) {
+            return Err(NoiseError::BadInterval { found: tau0 });
         }
+        if length < SHORTEST {
+            return Err(NoiseError::TooShort { found: length, expected: SHORTEST });
+        }
+        let window = hann(length);
+        let mut density = vec![0.0; length / 2 + 1];
+        let (mut segments, mut skipped) = (0_usize, 0);
+        let transform = RealFftPlanner::<f64>::new().plan_fft_forward(length);
+        let mut output = transform.make_output_vec();
+        for start in (0..=readings.len().saturating_sub(length)).step_by(length / 2) {
+            advance(progress, ())?;
+            let Some((mut segment, power)) =
+                readings.get(start..start + length).and_then(|segment| windowed(segment, &window))
+            else {
+                skipped += 1;
+                continue;
+            };
+            // Lengths agree by construction, so the transform cannot fail.
+            if transform.process(&mut segment, &mut output).is_ok() {
+                density.iter_mut().zip(&output).for_each(|(sum, z)| *sum += z.norm_sqr() / power);
+                segments += 1;
+            }
+        }
+        if segments == 0 {
+            return Err(NoiseError::TooShort {
+                found: readings.iter().filter(|y| y.is_finite()).count(),
+                expected: length,
+            });
+        }
+        let count = segments as f64;
+        for (k, value) in density.iter_mut().enumerate() {
+            let sides = if k == 0 || 2 * k == length { 1.0 } else { 2.0 };
+            *value *= sides * tau0 / count;
+        }
+        let bandwidth = window.iter().map(|w| w * w).sum::<f64>() / window.iter().sum::<f64>().powi(2) / tau0;
+        Ok(Spectrum {
+            frequency: (0..density.len()).map(|k| k as f64 / (length as f64 * tau0)).collect(),
+            density,
+            segments,
+            skipped,
+            degrees_of_freedom: 2.0 * count / (1.0 + 2.0 * OVERLAP_CORRELATION.powi(2) * (count - 1.0) / count),
+            resolution: bandwidth,
+        })
     }
-    if segments == 0 {
-        return Err(NoiseError::TooShort {
-            found: readings.iter().filter(|y| y.is_finite()).count(),
-            expected: length,
-        });
-    }
-    let count = segments as f64;
-    for (k, value) in density.iter_mut().enumerate() {
-        let sides = if k == 0 || 2 * k == length { 1.0 } else { 2.0 };
-        *value *= sides * tau0 / count;
-    }
-    let bandwidth = window.iter().map(|w| w * w).sum::<f64>() / window.iter().sum::<f64>().powi(2) / tau0;
-    Ok(Spectrum {
-        frequency: (0..density.len()).map(|k| k as f64 / (length as f64 * tau0)).collect(),
-        density,
-        segments,
-        skipped,
-        degrees_of_freedom: 2.0 * count / (1.0 + 2.0 * OVERLAP_CORRELATION.powi(2) * (count - 1.0) / count),
-        resolution: bandwidth,
-    })
 }
 
 /// The periodic Hann window, `w_j = sin^2(pi j / L)`.

@@ -133,51 +133,56 @@ impl NoiseTerms {
     }
 }
 
-/// Fits the noise terms to a record.
-///
-/// Q, N, B, K come from the overlapping Hadamard variances at tau0, 2 tau0, 4 tau0, ... (the Allan variance would
-/// take a ramp for random walk): their logarithms are fitted by least squares with the full covariance that the
-/// fitted spectrum implies, the squared coefficients held non-negative. All four are always free, so the uncertainty
-/// of each allows for any of the others. A term is determined if a record without it, the others free to take its
-/// place, costs 3^2 or more in chi-squared (for Gaussian residuals an absent term reaches that once in 700
-/// records); else its upper bound is where chi-squared has risen by 1.645^2.
-///
-/// The ramp is the least-squares slope of the readings, with the uncertainty that the fitted noise gives a slope; it
-/// is determined if it exceeds three times what the other terms, undetermined ones at their upper bounds, explain. `progress` is asked
-/// again and again.
-///
-/// # Errors
-/// [`NoiseError::TooShort`] below 64 readings, [`NoiseError::TooManyGaps`] if gaps leave variances at fewer than four
-/// averaging times, [`NoiseError::Constant`] if a variance vanishes, [`NoiseError::Indescribable`] if no sum of
-/// the terms comes near them; [`NoiseError::Stopped`].
-pub fn fit_noise_terms(phase: &Phase, progress: OnProgress<()>) -> Result<NoiseTerms, NoiseError> {
-    /// Three standard deviations, squared.
-    const SHOWN: f64 = 9.0;
-    let (fit, units) = prepare(phase, progress)?;
-    let model = fit.best().ok_or(NoiseError::Indescribable)?;
-    let deviations = fit.standard_deviations(&model).ok_or(NoiseError::Indescribable)?;
-    let mut coefficients = [Coefficient::NotDetermined { upper_bound: f64::INFINITY }; 5];
-    for k in 0..STOCHASTIC {
-        advance(progress, ())?;
-        let cost = fit.cost_of_absence(&model, k).ok_or(NoiseError::Indescribable)?;
-        let unit = units[k].sqrt();
-        coefficients[k] = if cost >= SHOWN {
-            let value = model.theta[k].sqrt();
-            Coefficient::Determined { value: unit * value, standard_uncertainty: unit * deviations[k] / (2.0 * value) }
-        } else {
-            Coefficient::NotDetermined { upper_bound: unit * fit.upper_bound(&model, k).sqrt() }
-        };
+impl NoiseTerms {
+    /// Fits the noise terms to a record.
+    ///
+    /// Q, N, B, K come from the overlapping Hadamard variances at tau0, 2 tau0, 4 tau0, ... (the Allan variance would
+    /// take a ramp for random walk): their logarithms are fitted by least squares with the full covariance that the
+    /// fitted spectrum implies, the squared coefficients held non-negative. All four are always free, so the uncertainty
+    /// of each allows for any of the others. A term is determined if a record without it, the others free to take its
+    /// place, costs 3^2 or more in chi-squared (for Gaussian residuals an absent term reaches that once in 700
+    /// records); else its upper bound is where chi-squared has risen by 1.645^2.
+    ///
+    /// The ramp is the least-squares slope of the readings, with the uncertainty that the fitted noise gives a slope; it
+    /// is determined if it exceeds three times what the other terms, undetermined ones at their upper bounds, explain. `progress` is asked
+    /// again and again.
+    ///
+    /// # Errors
+    /// [`NoiseError::TooShort`] below 64 readings, [`NoiseError::TooManyGaps`] if gaps leave variances at fewer than four
+    /// averaging times, [`NoiseError::Constant`] if a variance vanishes, [`NoiseError::Indescribable`] if no sum of
+    /// the terms comes near them; [`NoiseError::Stopped`].
+    pub fn of(phase: &Phase, progress: OnProgress<()>) -> Result<NoiseTerms, NoiseError> {
+        /// Three standard deviations, squared.
+        const SHOWN: f64 = 9.0;
+        let (fit, units) = prepare(phase, progress)?;
+        let model = fit.best().ok_or(NoiseError::Indescribable)?;
+        let deviations = fit.standard_deviations(&model).ok_or(NoiseError::Indescribable)?;
+        let mut coefficients = [Coefficient::NotDetermined { upper_bound: f64::INFINITY }; 5];
+        for k in 0..STOCHASTIC {
+            advance(progress, ())?;
+            let cost = fit.cost_of_absence(&model, k).ok_or(NoiseError::Indescribable)?;
+            let unit = units[k].sqrt();
+            coefficients[k] = if cost >= SHOWN {
+                let value = model.theta[k].sqrt();
+                Coefficient::Determined {
+                    value: unit * value,
+                    standard_uncertainty: unit * deviations[k] / (2.0 * value),
+                }
+            } else {
+                Coefficient::NotDetermined { upper_bound: unit * fit.upper_bound(&model, k).sqrt() }
+            };
+        }
+        let best = std::array::from_fn(|k| model.theta[k] * units[k]);
+        coefficients[STOCHASTIC] = ramp(phase, &coefficients, &best);
+        let present = model.theta.iter().filter(|theta| **theta > 0.0).count();
+        Ok(NoiseTerms {
+            coefficients,
+            best,
+            degrees_of_freedom: fit.factors.len().saturating_sub(present),
+            taus: fit.factors.iter().map(|m| *m as f64 * phase.tau0()).collect(),
+            chi_squared: model.chi_squared,
+        })
     }
-    let best = std::array::from_fn(|k| model.theta[k] * units[k]);
-    coefficients[STOCHASTIC] = ramp(phase, &coefficients, &best);
-    let present = model.theta.iter().filter(|theta| **theta > 0.0).count();
-    Ok(NoiseTerms {
-        coefficients,
-        best,
-        degrees_of_freedom: fit.factors.len().saturating_sub(present),
-        taus: fit.factors.iter().map(|m| *m as f64 * phase.tau0()).collect(),
-        chi_squared: model.chi_squared,
-    })
 }
 
 /// The Hadamard variances of the record, in units of the first of them and of tau0, and those units of the squared

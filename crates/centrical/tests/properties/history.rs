@@ -1,8 +1,8 @@
 //! Histories against drawn ones: intervals cover as they say, and what was planted is found, nothing else.
 
 use centrical::history::{
-    Between, Curve, Likely, Point, Quantiles, Reading, Series, SessionEstimates, UnitDistance, UnitSessions, distances,
-    sameness, station_test, unit_trends,
+    Between, Curve, Likely, Point, Quantiles, Reading, Sameness, Series, SessionEstimates, StationTest, UnitDistance,
+    UnitSessions, UnitTrend,
 };
 use nalgebra::{DMatrix, DVector};
 
@@ -148,7 +148,7 @@ fn a_move_to_another_station_is_no_scatter() {
             };
             let sessions: Vec<SessionEstimates> = points.iter().map(session).collect();
             let changes: Vec<DMatrix<f64>> = (0..6).map(|i| shared.rows(i, 1).into_owned()).collect();
-            let test = sameness(&sessions, &vec![vec![0]; 6], &changes).unwrap();
+            let test = Sameness::of(&sessions, &vec![vec![0]; 6], &changes).unwrap();
             assert!((test.chi_squared / found.misfit - 1.0).abs() < 1e-9, "{} {}", test.chi_squared, found.misfit);
             differ += u32::from(test.probability < 0.05);
         }
@@ -237,7 +237,7 @@ fn what_sessions_share_cancels_in_differences() {
             covariance: covariance.clone(),
         };
         let mut sessions = [session(), session(), session()];
-        let test = sameness(&sessions, &each_of(5, sessions.len()), &[]).unwrap();
+        let test = Sameness::of(&sessions, &each_of(5, sessions.len()), &[]).unwrap();
         assert_eq!(test.degrees_of_freedom, 10);
         sum += test.chi_squared;
         small += i32::from(test.probability < 0.05);
@@ -245,9 +245,9 @@ fn what_sessions_share_cancels_in_differences() {
         // One that is 12 standard deviations off is named, and chi^2 without it is that of the two others.
         let odd = run % 3;
         sessions[odd].values += 12.0 * factor.column(2);
-        let farthest = sameness(&sessions, &each_of(5, sessions.len()), &[]).unwrap().farthest.unwrap();
+        let farthest = Sameness::of(&sessions, &each_of(5, sessions.len()), &[]).unwrap().farthest.unwrap();
         let others = [(odd + 1) % 3, (odd + 2) % 3].map(|n| sessions[n].clone());
-        let alone = sameness(&others, &each_of(5, 2), &[]).unwrap();
+        let alone = Sameness::of(&others, &each_of(5, 2), &[]).unwrap();
         assert_eq!(farthest.session, odd);
         assert!((farthest.probability_of_others / alone.probability - 1.0).abs() < 1e-6);
         assert_eq!(alone.farthest, None);
@@ -261,7 +261,7 @@ fn what_sessions_share_cancels_in_differences() {
                 covariance: covariance.clone(),
             })
             .collect();
-        let farthest = sameness(&sessions, &each_of(5, sessions.len()), &[]).unwrap().farthest.unwrap();
+        let farthest = Sameness::of(&sessions, &each_of(5, sessions.len()), &[]).unwrap().farthest.unwrap();
         too_far += i32::from(farthest.probability_by_scatter < 0.05);
     }
     assert!((1..41).contains(&too_far), "{too_far}");
@@ -296,11 +296,11 @@ fn sessions_need_not_have_all_quantities() {
             };
             has.iter().enumerate().map(session).collect()
         };
-        let test = sameness(&of(0.0), &has, &[]).unwrap();
+        let test = Sameness::of(&of(0.0), &has, &[]).unwrap();
         assert_eq!(test.degrees_of_freedom, 14);
         sum += test.chi_squared;
         small += i32::from(test.probability < 0.05);
-        let changed = sameness(&of(20.0 * covariance[(2, 2)].sqrt()), &has, &[]).unwrap();
+        let changed = Sameness::of(&of(20.0 * covariance[(2, 2)].sqrt()), &has, &[]).unwrap();
         assert!(changed.probability < 1e-6, "{run}: {changed:?}");
         let farthest = changed.farthest.unwrap();
         assert_eq!(farthest.session, 4);
@@ -321,7 +321,7 @@ fn alike(values: &DMatrix<f64>, seed: u64) -> Vec<UnitDistance> {
     let (n, p) = values.shape();
     let session =
         |unit, _| SessionEstimates { values: values.row(unit).transpose(), covariance: DMatrix::identity(p, p) * 1e-4 };
-    distances(&UnitSessions { counts: &vec![1; n], session: &session }, seed).unwrap()
+    UnitSessions { counts: &vec![1; n], session: &session }.distances(seed).unwrap()
 }
 
 /// Of 80 sound plants of fifty units, four have a unit that stands out; more than twelve, in one case of ten thousand. A unit
@@ -363,12 +363,12 @@ fn a_seat_that_drifts_is_found() {
     };
     for again in [1, 3] {
         let false_findings =
-            (0..200).filter(|_| station_test(&readings(again, &|_| 0.0)).unwrap().probability() < 0.05).count();
+            (0..200).filter(|_| StationTest::of(&readings(again, &|_| 0.0)).unwrap().probability() < 0.05).count();
         assert!(false_findings <= 20, "{again}: {false_findings}");
     }
-    let drift = station_test(&readings(3, &|time| 0.4 * time)).unwrap();
+    let drift = StationTest::of(&readings(3, &|time| 0.4 * time)).unwrap();
     assert!(drift.probability() < 1e-3 && (drift.slope - 0.4).abs() < 4.0 * drift.standard_uncertainty);
-    let step = station_test(&readings(3, &|time| if time > 1.8 { 1.0 } else { 0.0 })).unwrap();
+    let step = StationTest::of(&readings(3, &|time| if time > 1.8 { 1.0 } else { 0.0 })).unwrap();
     assert!(step.change_probability < 1e-3 && (step.changed_after - 1.8).abs() < 0.4, "{step:?}");
 }
 
@@ -383,7 +383,7 @@ fn a_machine_that_wanders_is_found() {
             let time = i as f64 / 12.0;
             Reading { time, unit: i % units, value: random.normal() + change(time) }
         };
-        station_test(&(0..n).map(at).collect::<Vec<_>>()).unwrap()
+        StationTest::of(&(0..n).map(at).collect::<Vec<_>>()).unwrap()
     };
     for (n, units) in [(8, 1), (8, 3), (24, 24), (24, 5), (90, 30)] {
         let chances: Vec<f64> = (0..RUNS).map(|_| test(n, units, &|_| 0.0).succession_probability).collect();
@@ -413,7 +413,7 @@ fn units_that_drift_are_found_among_others() {
     let sound = drawn(0.0, 2.0);
     let find = |units: &[Series]| -> (Vec<usize>, Vec<usize>) {
         let common = Between::of(units, Curve::Line, COVERAGE).unwrap();
-        let trends = unit_trends(units, common.variance, 0.05);
+        let trends = UnitTrend::of_all(units, common.variance, 0.05);
         let level = 0.025 / units.len() as f64;
         let which = |is: &dyn Fn(&centrical::history::UnitTrend) -> bool| {
             (0..).zip(&trends).filter(|(_, trend)| trend.as_ref().is_some_and(is)).map(|(n, _)| n).collect()
@@ -486,7 +486,7 @@ fn found_among_unequal(
     };
     let sessions: Vec<Vec<SessionEstimates>> = (0..units).map(&mut unit).collect();
     let session = |unit: usize, t: usize| sessions[unit][t].clone();
-    let distances = distances(&UnitSessions { counts: &counts, session: &session }, seed).unwrap();
+    let distances = UnitSessions { counts: &counts, session: &session }.distances(seed).unwrap();
     (0..).zip(distances).filter(|(_, unit)| unit.probability < 0.05).map(|(n, _)| n).collect()
 }
 

@@ -4,8 +4,7 @@ use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use centrical::stability::{
-    Coefficient, Estimator, NoiseError, NoiseTerm, Phase, PowerLaw, analyse, degrees_of_freedom, deviations,
-    fit_noise_terms, power_spectrum, regular_grid,
+    Analysis, Coefficient, Estimator, Grid, NoiseError, NoiseTerm, NoiseTerms, Phase, PowerLaw, Spectrum,
 };
 use centrical::{Stopped, unwatched};
 
@@ -29,7 +28,7 @@ struct Tally {
 fn tally(recipe: &Recipe) -> ([Tally; 5], usize) {
     let (mut tallies, mut consistent): ([Tally; 5], usize) = Default::default();
     for seed in 0..SEEDS {
-        let fit = fit_noise_terms(&phase(recipe, READINGS, seed), &unwatched).unwrap();
+        let fit = NoiseTerms::of(&phase(recipe, READINGS, seed), &unwatched).unwrap();
         consistent += usize::from(fit.is_consistent());
         for ((tally, coefficient), truth) in tallies.iter_mut().zip(fit.coefficients).zip(recipe.coefficients()) {
             match coefficient {
@@ -127,7 +126,7 @@ fn confidence_intervals_cover() {
         for estimator in estimators {
             let mut covered = [0; 2];
             for seed in 0..4 * SEEDS {
-                let found = deviations(&phase(&recipe, 1024, seed), estimator, &[16, 32], LEVEL, &unwatched).unwrap();
+                let found = phase(&recipe, 1024, seed).deviations(estimator, &[16, 32], LEVEL, &unwatched).unwrap();
                 for (covered, point) in covered.iter_mut().zip(found) {
                     let truth = term.allan_variance(1.0, point.tau).sqrt();
                     *covered += usize::from(point.lower <= truth && truth <= point.upper);
@@ -154,7 +153,7 @@ fn degrees_of_freedom_of_the_windowed_totals() {
         let mean = values.iter().sum::<f64>() / values.len() as f64;
         let variance = values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / values.len() as f64;
         let observed = 2.0 * mean * mean / variance;
-        let stated = degrees_of_freedom(estimator, PowerLaw::White, m, readings + 1);
+        let stated = estimator.degrees_of_freedom(PowerLaw::White, m, readings + 1);
         // The variance of 400 chi^2 of this freedom is itself known to sqrt((2 + 12 / edf) / 400) = 8 %.
         assert!((stated / observed - 1.0).abs() < 0.25, "{estimator:?}: observed {observed}, stated {stated}");
     }
@@ -172,7 +171,7 @@ fn the_power_law_is_identified() {
     for (recipe, law) in cases {
         let phase = phase(&recipe, READINGS, 1);
         for estimator in [Estimator::OverlappingAllan, Estimator::OverlappingHadamard] {
-            let found = deviations(&phase, estimator, &[1, 4, 16, READINGS / 20], 0.683, &unwatched).unwrap();
+            let found = phase.deviations(estimator, &[1, 4, 16, READINGS / 20], 0.683, &unwatched).unwrap();
             let (short, long) = found.split_at(3);
             assert!(short.iter().all(|d| d.law == law && d.is_identified), "{estimator:?}, {law:?}: {short:?}");
             assert!(matches!(long, [d] if !d.is_identified), "{estimator:?}, {law:?}: {long:?}");
@@ -195,8 +194,8 @@ fn gaps_do_not_move_the_deviations() {
     assert_eq!(gapped.gaps().missing, missing);
     for estimator in [Estimator::OverlappingAllan, Estimator::ModifiedAllan, Estimator::OverlappingHadamard] {
         let factors = whole.octaves(8);
-        let expected = deviations(&whole, estimator, &factors, 0.683, &unwatched).unwrap();
-        let found = deviations(&gapped, estimator, &factors, 0.997, &unwatched).unwrap();
+        let expected = whole.deviations(estimator, &factors, 0.683, &unwatched).unwrap();
+        let found = gapped.deviations(estimator, &factors, 0.997, &unwatched).unwrap();
         assert_eq!(expected.len(), found.len());
         for (expected, found) in expected.iter().zip(found) {
             assert!(found.lower < expected.value && expected.value < found.upper, "{estimator:?}: {found:?}");
@@ -209,7 +208,7 @@ fn gaps_do_not_move_the_deviations() {
 fn the_spectrum_of_white_readings_is_flat_and_its_integral_the_variance() {
     let recipe = Recipe { white: 1e-3, ..Recipe::default() };
     let readings = recipe.readings(1 << 16, TAU0, 5);
-    let spectrum = power_spectrum(&readings, TAU0, 1024, &unwatched).unwrap();
+    let spectrum = Spectrum::of(&readings, TAU0, 1024, &unwatched).unwrap();
     assert_eq!(spectrum.segments, 127);
     let (lower, upper) = spectrum.interval(0.95).unwrap();
     // One-sided: twice N^2. The ends of the band have half the freedom and the mean is taken off.
@@ -227,7 +226,7 @@ fn a_line_stands_at_its_frequency_with_its_power() {
     let (frequency, amplitude) = (12.5, 0.3);
     let readings: Vec<f64> =
         (0..1 << 14).map(|k| amplitude * (std::f64::consts::TAU * frequency * TAU0 * f64::from(k)).sin()).collect();
-    let spectrum = power_spectrum(&readings, TAU0, 2048, &unwatched).unwrap();
+    let spectrum = Spectrum::of(&readings, TAU0, 2048, &unwatched).unwrap();
     let peak =
         (0..spectrum.density.len()).max_by(|&a, &b| spectrum.density[a].total_cmp(&spectrum.density[b])).unwrap();
     assert_eq!(spectrum.frequency[peak], frequency);
@@ -240,7 +239,7 @@ fn a_line_stands_at_its_frequency_with_its_power() {
 fn readings_phase_and_time_stamps_agree() {
     let readings = Recipe { white: 1.0, ramp: 1.0, ..Recipe::default() }.readings(500, TAU0, 2);
     let times: Vec<f64> = (0..500).map(|k| 7.0 + TAU0 * f64::from(k)).collect();
-    let grid = regular_grid(&times, &readings, &unwatched).unwrap();
+    let grid = Grid::of(&times, &readings, &unwatched).unwrap();
     let direct = Phase::integrate(&readings, TAU0, &unwatched).unwrap();
     let stamped = Phase::integrate(&grid.readings, grid.interval, &unwatched).unwrap();
     let given = Phase::new(direct.points().to_vec(), TAU0).unwrap();
@@ -253,20 +252,18 @@ fn readings_phase_and_time_stamps_agree() {
 
 #[test]
 fn what_cannot_be_analysed_is_an_error() {
-    assert!(fit_noise_terms(&Phase::integrate(&[1.0; 100], TAU0, &unwatched).unwrap(), &unwatched).is_err());
-    assert!(fit_noise_terms(&Phase::integrate(&[1.0, 2.0, 3.0], TAU0, &unwatched).unwrap(), &unwatched).is_err());
+    assert!(NoiseTerms::of(&Phase::integrate(&[1.0; 100], TAU0, &unwatched).unwrap(), &unwatched).is_err());
+    assert!(NoiseTerms::of(&Phase::integrate(&[1.0, 2.0, 3.0], TAU0, &unwatched).unwrap(), &unwatched).is_err());
     let every_other: Vec<f64> = (0..1000).map(|k| if k % 2 == 0 { f64::NAN } else { f64::from(k % 7) }).collect();
     assert_eq!(
-        fit_noise_terms(&Phase::integrate(&every_other, TAU0, &unwatched).unwrap(), &unwatched)
-            .unwrap_err()
-            .to_string(),
+        NoiseTerms::of(&Phase::integrate(&every_other, TAU0, &unwatched).unwrap(), &unwatched).unwrap_err().to_string(),
         "found 499 of 999 readings missing, expected stretches of which a tenth is missing at most"
     );
-    assert!(power_spectrum(&[1.0; 100], TAU0, 200, &unwatched).is_err());
-    assert!(power_spectrum(&[f64::NAN; 100], TAU0, 16, &unwatched).is_err());
+    assert!(Spectrum::of(&[1.0; 100], TAU0, 200, &unwatched).is_err());
+    assert!(Spectrum::of(&[f64::NAN; 100], TAU0, 16, &unwatched).is_err());
     let phase = Phase::integrate(&[1.0, 2.0, 3.0], TAU0, &unwatched).unwrap();
-    assert!(deviations(&phase, Estimator::Allan, &[1], 1.0, &unwatched).is_err());
-    assert!(deviations(&phase, Estimator::ModifiedTotal, &[0, 5, 99], 0.5, &unwatched).unwrap().is_empty());
+    assert!(phase.deviations(Estimator::Allan, &[1], 1.0, &unwatched).is_err());
+    assert!(phase.deviations(Estimator::ModifiedTotal, &[0, 5, 99], 0.5, &unwatched).unwrap().is_empty());
 }
 
 /// Records that no noise term describes are analysed all the same, and the misfit shows in chi-squared.
@@ -275,7 +272,7 @@ fn what_is_no_such_noise_shows_as_misfit() {
     let hum = |k: i32| (f64::from(k) * 0.3).sin() + 1e-2 * (f64::from(k) * 1.7).cos();
     let readings: Vec<f64> = (0..5000).map(hum).collect();
     assert!(
-        !fit_noise_terms(&Phase::integrate(&readings, TAU0, &unwatched).unwrap(), &unwatched).unwrap().is_consistent()
+        !NoiseTerms::of(&Phase::integrate(&readings, TAU0, &unwatched).unwrap(), &unwatched).unwrap().is_consistent()
     );
 }
 
@@ -286,7 +283,7 @@ fn coefficients_follow_the_units_of_reading_and_time() {
     let readings = recipe.readings(READINGS, TAU0, 4);
     let scaled: Vec<f64> = readings.iter().map(|y| 1e12 * y).collect();
     let fit = |readings: &[f64], tau0| {
-        fit_noise_terms(&Phase::integrate(readings, tau0, &unwatched).unwrap(), &unwatched).unwrap()
+        NoiseTerms::of(&Phase::integrate(readings, tau0, &unwatched).unwrap(), &unwatched).unwrap()
     };
     let (plain, scaled) = (fit(&readings, TAU0), fit(&scaled, 4.0 * TAU0));
     for (term, factor) in [(NoiseTerm::Quantisation, 4e12), (NoiseTerm::White, 2e12), (NoiseTerm::RandomWalk, 5e11)] {
@@ -309,7 +306,7 @@ fn lines_are_found_with_their_amplitude() {
     let mut readings = recipe.readings(16_384, TAU0, 7);
     let rate = std::f64::consts::TAU * 0.123_4;
     readings.iter_mut().enumerate().for_each(|(k, y)| *y += 5e-3 * (rate * k as f64).sin());
-    let spectrum = power_spectrum(&readings, TAU0, 2048, &unwatched).unwrap();
+    let spectrum = Spectrum::of(&readings, TAU0, 2048, &unwatched).unwrap();
     let lines = spectrum.lines();
     assert_eq!(lines.len(), 1, "{lines:?}");
     assert!((lines[0].frequency * TAU0 - 0.123_4).abs() < 1.0 / 2048.0);
@@ -319,7 +316,7 @@ fn lines_are_found_with_their_amplitude() {
     let found: usize = (0..200)
         .map(|seed| {
             let recipe = if seed % 2 == 0 { &red } else { &recipe };
-            power_spectrum(&recipe.readings(8192, TAU0, 100 + seed), TAU0, 512, &unwatched).unwrap().lines().len()
+            Spectrum::of(&recipe.readings(8192, TAU0, 100 + seed), TAU0, 512, &unwatched).unwrap().lines().len()
         })
         .sum();
     assert!(found <= 2, "{found} lines in noise");
@@ -329,7 +326,7 @@ fn lines_are_found_with_their_amplitude() {
 #[test]
 fn bands_of_white_noise_have_its_density() {
     let readings = Recipe { white: 1e-3, ..Recipe::default() }.readings(65_536, TAU0, 8);
-    let spectrum = power_spectrum(&readings, TAU0, 4096, &unwatched).unwrap();
+    let spectrum = Spectrum::of(&readings, TAU0, 4096, &unwatched).unwrap();
     let bands = spectrum.bands(2.0);
     assert!(bands.len() > 15 && bands.is_sorted_by(|a, b| a.frequency < b.frequency));
     for band in bands.iter().filter(|band| band.frequency > 8.0 / (4096.0 * TAU0)) {
@@ -351,7 +348,7 @@ fn an_analysis_ends_when_it_is_stopped() {
             let call = calls.fetch_add(1, Ordering::Relaxed) + 1;
             if call >= at { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         };
-        analyse(&t, &y, &[Estimator::OverlappingAllan, Estimator::ModifiedTotal], &asked)
+        Analysis::of(&t, &y, &[Estimator::OverlappingAllan, Estimator::ModifiedTotal], &asked)
     };
     assert!(analysed(usize::MAX).is_ok());
     let all = calls.load(Ordering::Relaxed);

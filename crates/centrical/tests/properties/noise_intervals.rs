@@ -1,6 +1,6 @@
 //! Intervals of the deviations hold the true ones as often as they say, at every tau.
 
-use centrical::stability::{Deviation, Estimator, Phase, PowerLaw, deviations};
+use centrical::stability::{Deviation, Estimator, Phase, PowerLaw};
 use centrical::unwatched;
 
 use super::noise_source::Recipe;
@@ -26,7 +26,7 @@ fn intervals_cover_at_every_tau() {
         for estimator in [Estimator::Allan, Estimator::OverlappingAllan, Estimator::OverlappingHadamard] {
             let found: Vec<Vec<Deviation>> = phases
                 .iter()
-                .map(|phase| deviations(phase, estimator, &phase.octaves(3), LEVEL, &unwatched).unwrap())
+                .map(|phase| phase.deviations(estimator, &phase.octaves(3), LEVEL, &unwatched).unwrap())
                 .collect();
             let taus = found[0].len();
             assert_eq!(taus, 11);
@@ -58,7 +58,7 @@ fn a_change_of_the_law_is_followed() {
     for (recipe, expected) in cases {
         for seed in 0..20 {
             let phase = Phase::integrate(&recipe.readings(65_536, TAU0, seed), TAU0, &unwatched).unwrap();
-            let found = deviations(&phase, Estimator::OverlappingAllan, &[1, 1024], LEVEL, &unwatched).unwrap();
+            let found = phase.deviations(Estimator::OverlappingAllan, &[1, 1024], LEVEL, &unwatched).unwrap();
             assert_eq!([found[0].law, found[1].law], expected, "{recipe:?}, {seed}");
         }
     }

@@ -1,6 +1,6 @@
 //! Charts of D. C. Montgomery, "Introduction to Statistical Quality Control", 6th edition, tables 9.1 and 9.2 (CUSUM), 9.10 and 9.11 (EWMA): every row.
 
-use centrical::history::{Control, Rule, cusum, ewma, moving_ranges, signals};
+use centrical::history::{Control, Rule};
 
 /// Table 9.1: twenty values about 10, ten about 11, standard deviation 1.
 const VALUES: [f64; 30] = [
@@ -20,7 +20,7 @@ fn the_cusum_of_table_9_2() {
         0.05, 1.56, 1.77, 0.0, 0.0, 0.0, 1.46, 0.0, 0.30, 0.0, 0.47, 0.0, 0.0, 0.10, 0.0, 0.13, 0.0, 0.0, 0.98, 0.0,
         0.0, 0.17, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
     ];
-    let chart = cusum(&VALUES, CONTROL, 0.5, 5.0);
+    let chart = CONTROL.cusum(&VALUES, 0.5, 5.0);
     for (found, printed) in chart.upper.iter().chain(&chart.lower).zip(upper.iter().chain(&lower)) {
         assert!((found - printed).abs() < 0.005 + 1e-9, "found {found}, printed {printed}");
     }
@@ -34,7 +34,7 @@ fn the_ewma_of_table_9_11() {
         10.1216, 10.0495, 10.0525, 9.98426, 10.0478, 10.074, 9.91864, 10.0108, 10.0997, 10.0227, 10.2495, 10.3745,
         10.3971, 10.4654, 10.4568, 10.5731, 10.6468, 10.6341,
     ];
-    let chart = ewma(&VALUES, CONTROL, 0.1, 2.7);
+    let chart = CONTROL.ewma(&VALUES, 0.1, 2.7);
     for (found, printed) in chart.means.iter().zip(printed) {
         assert!((found - printed).abs() < 0.6e-4, "found {found}, printed {printed}");
     }
@@ -60,8 +60,8 @@ fn each_rule_in_its_own_words() {
     ];
     for (rule, z) in cases {
         let values: Vec<f64> = z.iter().map(|z| 10.0 + z).collect();
-        assert_eq!(signals(&values, CONTROL, &[rule]), [(values.len() - 1, rule)], "{rule:?}");
-        assert!(signals(&values[..values.len() - 1], CONTROL, &[rule]).is_empty(), "{rule:?}");
+        assert_eq!(CONTROL.signals(&values, &[rule]), [(values.len() - 1, rule)], "{rule:?}");
+        assert!(CONTROL.signals(&values[..values.len() - 1], &[rule]).is_empty(), "{rule:?}");
     }
 }
 
@@ -70,7 +70,7 @@ fn each_rule_in_its_own_words() {
 fn limits_from_accepted_values() {
     let control = Control::of(&[1.0, 3.0, 2.0, 4.0]).unwrap();
     let mean_range = 5.0 / 3.0;
-    assert_eq!((moving_ranges(&[1.0, 3.0, 2.0, 4.0]), control.centre), (vec![2.0, 1.0, 2.0], 2.5));
+    assert_eq!((Control::moving_ranges(&[1.0, 3.0, 2.0, 4.0]), control.centre), (vec![2.0, 1.0, 2.0], 2.5));
     for (found, printed, half_digit) in [
         (mean_range / control.deviation, 1.128, 5e-4),
         ((control.limits()[1] - 2.5) / mean_range, 2.66, 5e-3),

@@ -1,6 +1,6 @@
 //! The component between sessions, level and slope beside metafor 3.8-1 (R), which `metafor/generate.R` calls; Welch's test beside R.
 
-use centrical::history::{Between, Curve, Likely, Point, Quantiles, Series, batch_test};
+use centrical::history::{BatchTest, Between, Curve, Likely, Point, Quantiles, Series};
 
 const POINTS: &str = include_str!("metafor/points.csv");
 const RESULTS: &str = include_str!("metafor/metafor.csv");
@@ -62,7 +62,7 @@ fn every_row_of_metafor() {
 #[test]
 fn welch_as_r_has_it() {
     let batches: Vec<Vec<f64>> = (3..=5).map(|s| points(s).iter().map(|p| p.value).collect()).collect();
-    let test = batch_test(&batches).unwrap();
+    let test = BatchTest::of(&batches).unwrap();
     let printed: Vec<f64> = WELCH.split_whitespace().filter_map(|word| word.parse().ok()).collect();
     let found = [test.variance_ratio, test.degrees_of_freedom[0], test.degrees_of_freedom[1], test.probability];
     for (found, expected) in found.into_iter().zip(printed) {

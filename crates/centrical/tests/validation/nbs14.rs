@@ -1,6 +1,6 @@
 //! The NBS data sets: nine readings of NBS Monograph 140, Annex 8.E, and Riley's 1000 pseudo-random readings.
 
-use centrical::stability::{Deviation, Estimator, Phase, PowerLaw, degrees_of_freedom, deviations};
+use centrical::stability::{Deviation, Estimator, Phase, PowerLaw};
 use centrical::unwatched;
 
 const RILEY: &str = include_str!("nbs14/riley_tables.csv");
@@ -41,7 +41,7 @@ fn assert_printed(what: &str, computed: f64, printed: &str, units: f64) {
 }
 
 fn single(phase: &Phase, estimator: Estimator, m: usize) -> Deviation {
-    deviations(phase, estimator, &[m], ONE_SIGMA, &unwatched).unwrap()[0]
+    phase.deviations(estimator, &[m], ONE_SIGMA, &unwatched).unwrap()[0]
 }
 
 fn standard_deviation(readings: &[f64], m: usize) -> f64 {
@@ -162,7 +162,7 @@ fn every_degree_of_freedom_of_allantools() {
     let mut cells = 0;
     for row in rows(ALLANTOOLS).filter(|row| row[0] == "freedom") {
         let law = PowerLaw::ALL.into_iter().find(|law| law.alpha().to_string() == row[4]).unwrap();
-        let computed = degrees_of_freedom(estimator(row[2]), law, row[3].parse().unwrap(), row[1].parse().unwrap());
+        let computed = estimator(row[2]).degrees_of_freedom(law, row[3].parse().unwrap(), row[1].parse().unwrap());
         let expected: f64 = row[5].parse().unwrap();
         // Rounding in s_w grows with F^2 |t|^(3 - alpha): 1e-6 is what the largest F and |t| leave of 16 digits.
         assert!((computed / expected - 1.0).abs() < 1e-6, "{row:?}: computed {computed}");

@@ -2,7 +2,7 @@
 
 use std::borrow::Borrow;
 
-use centrical::history::{Control, Rule, cusum, ewma, moving_ranges, signals};
+use centrical::history::{Control, Rule};
 
 use super::calibrated::{Calibrated, Finder};
 use crate::document::{CHART_SCHEMA, ChartReport, ChartSignal, Program};
@@ -116,8 +116,8 @@ pub fn chart(
             (Control::of(&accepted).ok_or(NoChart::Equal(accepted.len()))?, accepted.len())
         }
     };
-    let ranges = moving_ranges(&values);
-    let (mut means, mut sums) = (ewma(&values, control, EWMA.0, EWMA.1), cusum(&values, control, CUSUM.0, CUSUM.1));
+    let ranges = Control::moving_ranges(&values);
+    let (mut means, mut sums) = (control.ewma(&values, EWMA.0, EWMA.1), control.cusum(&values, CUSUM.0, CUSUM.1));
     let beyond = ranges.iter().enumerate().filter(|(_, range)| **range > control.range_limit()).map(|(n, _)| n + 1);
     let named = |rule: &'static str, words| move |session| ChartSignal { session, rule: rule.to_owned(), words };
     let mut all: Vec<ChartSignal> = single_values(&values, control, request.rules);
@@ -162,5 +162,5 @@ fn single_values(values: &[f64], control: Control, rules: RuleSet) -> Vec<ChartS
         rule: format!("{name}-{}", number(rule)),
         words: rule.words(),
     };
-    signals(values, control, rules).into_iter().map(signal).collect()
+    control.signals(values, rules).into_iter().map(signal).collect()
 }

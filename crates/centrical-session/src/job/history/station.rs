@@ -4,7 +4,7 @@ use std::borrow::Borrow;
 use std::collections::{BTreeMap, BTreeSet};
 
 use centrical::Group;
-use centrical::history::{Reading, StationTest, station_test};
+use centrical::history::{Reading, StationTest};
 use centrical::uncertainty::family_wise;
 
 use super::calibrated::{Calibrated, CalibratedParameter, years};
@@ -65,7 +65,7 @@ fn parameter((name, unit): (&str, &str), sessions: &[(&Calibrated, Reading)]) ->
     let squares = sessions.iter().filter_map(|(c, _)| Some(c.standard_uncertainties[c.place(name)?].powi(2)));
     let stated = (squares.sum::<f64>() / readings.len() as f64).sqrt();
     let scatter = (values.map(|v| (v - mean).powi(2)).sum::<f64>() / (readings.len().max(2) - 1) as f64).sqrt();
-    let found = station_test(&readings);
+    let found = StationTest::of(&readings);
     let test = found.filter(StationTest::has_power);
     let zero = sessions.iter().map(|(calibrated, _)| calibrated.date).min()?;
     let day = |time: f64| sessions.iter().map(|(c, _)| c.date).find(|date| years(zero, *date) == time);

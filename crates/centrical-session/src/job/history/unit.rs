@@ -1,7 +1,7 @@
 //! One unit over its calibrations.
 
 use centrical::history::{
-    Between, Curve, DAYS_IN_YEAR, Estimated, Evolution, Likely, Quantiles, Series, SessionEstimates, sameness,
+    Between, Curve, DAYS_IN_YEAR, Estimated, Evolution, Likely, Quantiles, Sameness, Series, SessionEstimates,
 };
 use centrical::uncertainty::{Compensated, family_wise};
 use centrical_compensate::Term;
@@ -203,7 +203,7 @@ impl Job<'_> {
             shared.push(changes.select_rows(&has));
             quantities.push(has);
         }
-        sameness(&sessions, &quantities, &shared).map(|test| SamenessSummary {
+        Sameness::of(&sessions, &quantities, &shared).map(|test| SamenessSummary {
             chi_squared: test.chi_squared,
             degrees_of_freedom: test.degrees_of_freedom,
             probability: test.probability,

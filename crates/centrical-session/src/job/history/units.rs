@@ -3,9 +3,7 @@
 use std::borrow::Borrow;
 use std::collections::{BTreeMap, BTreeSet};
 
-use centrical::history::{
-    Between, Curve, FEWEST_UNITS, Series, UnitSessions, batch_test, capability, distances, unit_trends,
-};
+use centrical::history::{BatchTest, Between, Capability, Curve, Series, UnitSessions, UnitTrend};
 use centrical::uncertainty::family_wise;
 use rayon::prelude::*;
 
@@ -54,7 +52,7 @@ pub fn units_history(compared: &ComparedUnits, request: &UnitsHistoryRequest) ->
     }
     let by_parameter = by_parameter(&stations, &lasts, &names, &all);
     let (tested, few): (Vec<&AtStation>, Vec<&AtStation>) =
-        stations.iter().partition(|units| units.len() >= FEWEST_UNITS);
+        stations.iter().partition(|units| units.len() >= UnitSessions::FEWEST_UNITS);
     let is_by_batch = parameters.iter().any(|p| p.batch_probability.is_some());
     let is_over_time = by_parameter.iter().any(|of| !of.findings.is_empty());
     let kinds = [!tested.is_empty(), is_over_time, is_by_batch].into_iter().filter(|is_tested| *is_tested).count();
@@ -125,7 +123,7 @@ fn parameter(
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);
     let (low, high) = request.limits.get(name).copied().unwrap_or_default();
-    let capability = capability(values, low, high, UnitHistoryRequest::COVERAGE).map(|found| CapabilitySummary {
+    let capability = Capability::of(values, low, high, UnitHistoryRequest::COVERAGE).map(|found| CapabilitySummary {
         low,
         high,
         cp: found.cp.map(|cp| cp.value),
@@ -143,7 +141,7 @@ fn parameter(
         median: 0.5 * (sorted[(sorted.len() - 1) / 2] + sorted[sorted.len() / 2]),
         largest: sorted[sorted.len() - 1],
         capability,
-        batch_probability: batch_test(&batches.values().cloned().collect::<Vec<_>>()).map(|test| test.probability),
+        batch_probability: BatchTest::of(&batches.values().cloned().collect::<Vec<_>>()).map(|test| test.probability),
         batches: batches.into_iter().map(|(batch, values)| summary(batch, &values)).collect(),
         batches_differ: false,
     })
@@ -233,7 +231,7 @@ fn outlying(
         };
         let sessions = UnitSessions { counts: &counts, session: &session };
         let numbers = units.iter().map(|(number, _)| *number);
-        let distances = distances(&sessions, SEED).into_iter().flatten();
+        let distances = sessions.distances(SEED).into_iter().flatten();
         let found = numbers.zip(distances).map(|(number, distance)| {
             let mut scores: Vec<(String, f64)> =
                 names.iter().map(|&name| name.to_owned()).zip(distance.scores).collect();
@@ -263,7 +261,7 @@ fn findings(
     name: &str,
 ) -> Vec<UnitFinding> {
     let Some(between) = Between::of(series, Curve::Line, UnitHistoryRequest::COVERAGE) else { return Vec::new() };
-    let trends = units.iter().zip(series).zip(unit_trends(series, between.variance, FAMILY));
+    let trends = units.iter().zip(series).zip(UnitTrend::of_all(series, between.variance, FAMILY));
     let findings = trends.filter_map(|(((n, sessions), series), trend)| {
         let (n, trend) = (*n, trend?);
         // Family-wise a finding is no more probable: what is not found alone is not found.

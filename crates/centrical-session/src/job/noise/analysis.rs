@@ -2,7 +2,7 @@
 
 use centrical::OnProgress;
 use centrical::reduction::staircase;
-use centrical::stability::{CONFIDENCE, Estimator, analyse};
+use centrical::stability::{Analysis, Estimator};
 use rayon::prelude::*;
 
 use super::series::Series;
@@ -18,14 +18,14 @@ pub fn analyse_noise(series: &Series, estimators: &[Estimator], progress: OnProg
     let columns = series.columns.par_iter();
     let analysed = columns.map(|(name, unit, values)| {
         let failed = |source| Error::noise(&series.file, name, source);
-        let noise = analyse(&series.t, values, estimators, &|()| progress(0)).map_err(failed)?;
+        let noise = Analysis::of(&series.t, values, estimators, &|()| progress(0)).map_err(failed)?;
         let staircase = staircase(&series.t, values, &|()| progress(0))?;
         Ok::<_, Error>(ReadingNoise { name: name.clone(), unit: unit.clone(), staircase, noise })
     });
     Ok(NoiseAnalysis {
         file: series.file.clone(),
         window: [series.t.first(), series.t.last()].map(|t| t.copied().unwrap_or(f64::NAN)),
-        confidence: CONFIDENCE,
+        confidence: Analysis::CONFIDENCE,
         readings: analysed.collect::<Result<_, Error>>()?,
     })
 }

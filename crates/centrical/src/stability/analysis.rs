@@ -1,17 +1,14 @@
 //! The whole analysis of one series of readings.
 
-use super::deviation::{Deviation, deviations};
+use super::deviation::Deviation;
 use super::error::NoiseError;
 use super::estimator::Estimator;
-use super::grid::regular_grid;
+use super::grid::Grid;
 use super::phase::{BridgedGaps, Phase};
-use super::spectrum::{Spectrum, power_spectrum};
+use super::spectrum::Spectrum;
 use super::spikes::leave_out_spikes;
-use super::terms::{NoiseTerms, fit_noise_terms};
+use super::terms::NoiseTerms;
 use crate::progress::{OnProgress, advance};
-
-/// Level of confidence of the intervals: one standard deviation of a normal law.
-pub const CONFIDENCE: f64 = 0.683;
 
 /// The noise of a series of readings.
 #[derive(Debug, Clone)]
@@ -36,41 +33,51 @@ pub struct Analysis {
     pub terms: Result<NoiseTerms, NoiseError>,
 }
 
-/// Analyses the readings `y`, taken at the times `t` [s], with the given estimators. `progress` is asked again and again: many times
-/// a second, however long the series.
-///
-/// # Errors
-/// [`NoiseError`] if the readings are not a series: too few, or hardly any two of them evenly spaced;
-/// [`NoiseError::Stopped`].
-pub fn analyse(
-    t: &[f64],
-    y: &[f64],
-    estimators: &[Estimator],
-    progress: OnProgress<()>,
-) -> Result<Analysis, NoiseError> {
-    advance(progress, ())?;
-    let mut grid = regular_grid(t, y, progress)?;
-    let spikes = leave_out_spikes(&mut grid.readings, progress)?;
-    let phase = Phase::integrate(&grid.readings, grid.interval, progress)?;
-    let seen = || grid.readings.iter().filter(|y| y.is_finite());
-    let samples = seen().count();
-    let families = estimators.iter().map(|e| Ok((*e, family(&phase, *e, progress)?)));
-    Ok(Analysis {
-        mean: seen().sum::<f64>() / samples as f64,
-        interval: grid.interval,
-        samples,
-        spikes,
-        repeated: grid.repeated,
-        gaps: phase.gaps(),
-        deviations: families.collect::<Result<_, NoiseError>>()?,
-        spectrum: unless_stopped(power_spectrum(
-            &grid.readings,
-            grid.interval,
-            segment(grid.readings.len()),
-            progress,
-        ))?,
-        terms: unless_stopped(fit_noise_terms(&phase, progress))?,
-    })
+impl Analysis {
+    /// Level of confidence of the intervals: one standard deviation of a normal law.
+    pub const CONFIDENCE: f64 = 0.683;
+
+    /// Analyses the readings `y`, taken at the times `t` [s], with the given estimators. `progress` is asked again and again: many times
+    /// a second, however long the series.
+    ///
+    /// # Errors
+    /// [`NoiseError`] if the readings are not a series: too few, or hardly any two of them evenly spaced;
+    /// [`NoiseError::Stopped`].
+    pub fn of(
+        t: &[f64],
+        y: &[f64],
+        estimators: &[Estimator],
+        progress: OnProgress<()>,
+    ) -> Result<Analysis, NoiseError> {
+        advance(progress, ())?;
+        let mut grid = Grid::of(t, y, progress)?;
+        let spikes = leave_out_spikes(&mut grid.readings, progress)?;
+        let phase = Phase::integrate(&grid.readings, grid.interval, progress)?;
+        let seen = || grid.readings.iter().filter(|y| y.is_finite());
+        let samples = seen().count();
+        let families = estimators.iter().map(|e| Ok((*e, family(&phase, *e, progress)?)));
+        Ok(Analysis {
+            mean: seen().sum::<f64>() / samples as f64,
+            interval: grid.interval,
+            samples,
+            spikes,
+            repeated: grid.repeated,
+            gaps: phase.gaps(),
+            deviations: families.collect::<Result<_, NoiseError>>()?,
+            spectrum: unless_stopped(Spectrum::of(
+                &grid.readings,
+                grid.interval,
+                segment(grid.readings.len()),
+                progress,
+            ))?,
+            terms: unless_stopped(NoiseTerms::of(&phase, progress))?,
+        })
+    }
+
+    /// The noise terms that may be quoted: those that describe the deviations.
+    pub fn quotable(&self) -> Option<&NoiseTerms> {
+        self.terms.as_ref().ok().filter(|terms| terms.is_consistent())
+    }
 }
 
 /// What a part of the analysis gave, or why it could not; a part that was stopped stops the whole.
@@ -78,13 +85,6 @@ fn unless_stopped<T>(outcome: Result<T, NoiseError>) -> Result<Result<T, NoiseEr
     match outcome {
         Err(stopped @ NoiseError::Stopped(_)) => Err(stopped),
         outcome => Ok(outcome),
-    }
-}
-
-impl Analysis {
-    /// The noise terms that may be quoted: those that describe the deviations.
-    pub fn quotable(&self) -> Option<&NoiseTerms> {
-        self.terms.as_ref().ok().filter(|terms| terms.is_consistent())
     }
 }
 
@@ -97,7 +97,7 @@ fn family(phase: &Phase, estimator: Estimator, progress: OnProgress<()>) -> Resu
     let is_product = matches!(estimator, Estimator::ModifiedTotal | Estimator::TimeTotal | Estimator::HadamardTotal);
     let longest = if is_product { WORK / phase.points().len() } else { usize::MAX };
     let factors: Vec<usize> = phase.octaves(2).into_iter().filter(|m| *m <= longest).collect();
-    deviations(phase, estimator, &factors, CONFIDENCE, progress)
+    phase.deviations(estimator, &factors, Analysis::CONFIDENCE, progress)
 }
 
 /// Length of the spectrum's segments: a power of two such that about 16 of them fit half overlapping; a density then has
