@@ -8,7 +8,7 @@
 //! The second term is the remaining settling, the next two are the once-per-revolution term (tilt of the axis of
 //! rotation); at rest the mean is the only term. The noise is coloured, and one plateau is too short to show its
 //! colour: it is pooled over all plateaus of the session, or over those of each speed where they differ ([`NoiseModel`]), and then
-//! gives every mean its covariance ([`plateau_means`]).
+//! gives every mean its covariance ([`ReducedMounting::means`]).
 //!
 //! Samples are taken with equal weight or rejected: spikes (off the fit by more than `sqrt(2 ln 20 n)` robust standard
 //! deviations of `n` samples), stuck readings, and readings that are not numbers. Fewer than one in twenty plateaus loses a good sample
@@ -19,7 +19,7 @@
 //! that mistake ([`Mistake`]).
 //!
 //! Two passes, so that a record need never be held as a whole. The first condenses it to blocks ([`Survey`]), in which
-//! the windows are found ([`locate`]); the second takes the samples of one window at a time ([`Averaging`]). [`reduce`]
+//! the windows are found ([`Survey::locate`]); the second takes the samples of one window at a time ([`Averaging`]). [`Record::reduce`]
 //! does both for a record in memory.
 
 #![allow(
@@ -46,54 +46,57 @@ mod trembling;
 mod triangle;
 mod turning;
 
-pub use average::{Averaging, PlateauFit, ReducedMounting, average};
-pub use colour::{EXCLUDED, NoiseModel, plateau_means};
-pub use copies::{RepeatedRests, chance_of_likeness, repeated_rests};
-pub use ellipsoid::{CoarseScale, coarse_scale};
+pub use average::{Averaging, PlateauFit, ReducedMounting};
+pub(crate) use colour::EXCLUDED;
+pub use colour::NoiseModel;
+pub use copies::RepeatedRests;
+pub use ellipsoid::CoarseScale;
 pub use error::{ReductionError, Stretch};
-pub use locate::{ClockAgreement, ClockOffset, Located, PulseTrain, SpeedReading, SpeedTrace, locate};
+pub use locate::{ClockAgreement, ClockOffset, Located, PulseTrain, SpeedReading, SpeedTrace};
 pub use mistake::Mistake;
 pub use packed_times::PackedTimes;
 pub use plateau::{Arc, LeftOut, PlateauMean, ScheduledPlateau};
 pub use record::{Record, RecordSlice};
-pub use rests::{RestRecord, Rests, reduce_rests};
-pub use speed::{MeasuredSpeed, measured_speeds};
-pub use steady::{Staircase, SteadyStretch, staircase, steady_stretches};
-pub use survey::{Condensed, Extremes, Survey};
+pub use rests::{RestRecord, Rests};
+pub use speed::MeasuredSpeed;
+pub use steady::{Staircase, SteadyStretch};
+pub use survey::{Extremes, Survey};
 
-/// Finds and averages the scheduled plateaus of one mounting.
-///
-/// The plateaus are found by the record and the schedule alone. Telemetry adds the offset of its clock and the measured
-/// speeds.
-///
-/// # Errors
-/// [`ReductionError`] if the record is invalid (lengths, times), or a scheduled plateau is not in it.
-pub fn reduce(
-    record: &Record,
-    telemetry: Option<&SpeedTrace>,
-    schedule: &[ScheduledPlateau],
-) -> Result<ReducedMounting, ReductionError> {
-    let located = locate(&Survey::of(record.as_slice())?, telemetry, schedule)?;
-    averaged(record, located, schedule.len())
-}
+impl Record {
+    /// Finds and averages the scheduled plateaus of one mounting.
+    ///
+    /// The plateaus are found by the record and the schedule alone. Telemetry adds the offset of its clock and the measured
+    /// speeds.
+    ///
+    /// # Errors
+    /// [`ReductionError`] if the record is invalid (lengths, times), or a scheduled plateau is not in it.
+    pub fn reduce(
+        &self,
+        telemetry: Option<&SpeedTrace>,
+        schedule: &[ScheduledPlateau],
+    ) -> Result<ReducedMounting, ReductionError> {
+        let located = Survey::of(self.as_slice())?.locate(telemetry, schedule)?;
+        averaged(self, located, schedule.len())
+    }
 
-/// The same with speeds by a counter of revolutions in place of telemetry.
-///
-/// # Errors
-/// As [`reduce`].
-pub fn reduce_counted(
-    record: &Record,
-    pulses: &PulseTrain,
-    schedule: &[ScheduledPlateau],
-) -> Result<ReducedMounting, ReductionError> {
-    let mut located = locate(&Survey::of(record.as_slice())?, None, schedule)?;
-    located.time_pulses(pulses);
-    averaged(record, located, schedule.len())
+    /// The same with speeds by a counter of revolutions in place of telemetry.
+    ///
+    /// # Errors
+    /// As [`Record::reduce`].
+    pub fn reduce_counted(
+        &self,
+        pulses: &PulseTrain,
+        schedule: &[ScheduledPlateau],
+    ) -> Result<ReducedMounting, ReductionError> {
+        let mut located = Survey::of(self.as_slice())?.locate(None, schedule)?;
+        located.time_pulses(pulses);
+        averaged(self, located, schedule.len())
+    }
 }
 
 /// The plateaus of a record that are located.
 fn averaged(record: &Record, located: Located, count: usize) -> Result<ReducedMounting, ReductionError> {
-    let average = |plateau| average(&located, plateau, record.as_slice(), 0);
+    let average = |plateau| located.average(plateau, record.as_slice(), 0);
     let plateaus = (0..count).map(average).collect::<Result<_, _>>()?;
     Ok(ReducedMounting::new(located, plateaus))
 }
@@ -146,10 +149,9 @@ mod tests {
         let nominal = |omega: f64| Vector3::new(omega * omega * ARM, 0.0, 9.81);
         let schedule = OMEGA.map(|omega| ScheduledPlateau { omega, nominal_z: nominal(omega) });
         on_all(|| {
-            let mountings = [1, 2].map(|seed| reduce(&record(seed), None, &schedule).unwrap());
+            let mountings = [1, 2].map(|seed| record(seed).reduce(None, &schedule).unwrap());
             let noise = NoiseModel::pool(&mountings);
-            let means =
-                mountings.each_ref().map(|mounting| (mounting.settling_time(), plateau_means(mounting, &noise)));
+            let means = mountings.each_ref().map(|mounting| (mounting.settling_time(), mounting.means(&noise)));
             assert!(means.iter().flat_map(|(_, means)| means).any(|mean| mean.left_out.spikes > 0));
             // Every number in the shortest form that distinguishes it from all others.
             format!("{noise:?} {means:?}")

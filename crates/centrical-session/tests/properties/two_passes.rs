@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use centrical::reduction::{NoiseModel, ReducedMounting, ScheduledPlateau, plateau_means, reduce};
+use centrical::reduction::{NoiseModel, ReducedMounting, ScheduledPlateau};
 use centrical::{SetPoint, linear};
 use centrical_session::{RecordWriter, Session, read_record, reduce_without_inputs, unwatched};
 use tempfile::TempDir;
@@ -40,11 +40,11 @@ fn from_files_as_from_memory() {
         let scheduled = |s: &SetPoint| ScheduledPlateau { omega: s.omega, nominal_z: linear::nominal(experiment, s) };
         let schedule: Vec<ScheduledPlateau> = of_mounting.map(scheduled).collect();
         let telemetry = session.telemetry(m).unwrap();
-        reduce(&session.record(m).unwrap(), telemetry.as_ref(), &schedule).unwrap()
+        session.record(m).unwrap().reduce(telemetry.as_ref(), &schedule).unwrap()
     };
     let mountings: Vec<ReducedMounting> = (0..experiment.mountings.len()).map(mounting).collect();
     let noise = NoiseModel::pool(&mountings);
-    let means: Vec<_> = mountings.iter().flat_map(|mounting| plateau_means(mounting, &noise)).collect();
+    let means: Vec<_> = mountings.iter().flat_map(|mounting| mounting.means(&noise)).collect();
     let folder = TempDir::new().unwrap();
     for session in [&session, &as_parquet(folder.path())] {
         let (_, reduced) = reduce_without_inputs(session, &unwatched).unwrap();

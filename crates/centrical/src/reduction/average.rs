@@ -50,22 +50,19 @@ pub struct ReducedMounting {
     unscheduled: Vec<[f64; 2]>,
 }
 
-/// Averages a plateau from the samples of its window, without the `repeated` ones that had the stamp of the one before; samples
-/// outside the window are ignored.
-///
-/// # Errors
-/// [`ReductionError`] if the samples are not steady, or do not separate the mean from the once-per-revolution term.
-pub fn average(
-    located: &Located,
-    plateau: usize,
-    samples: RecordSlice,
-    repeated: usize,
-) -> Result<PlateauFit, ReductionError> {
-    let mut averaging = Averaging::new(located, plateau);
-    for (k, part) in located.parts(plateau).into_iter().enumerate() {
-        averaging.add(part, samples, if k == 0 { repeated } else { 0 })?;
+impl Located {
+    /// Averages a plateau from the samples of its window, without the `repeated` ones that had the stamp of the one before; samples
+    /// outside the window are ignored.
+    ///
+    /// # Errors
+    /// [`ReductionError`] if the samples are not steady, or do not separate the mean from the once-per-revolution term.
+    pub fn average(&self, plateau: usize, samples: RecordSlice, repeated: usize) -> Result<PlateauFit, ReductionError> {
+        let mut averaging = Averaging::new(self, plateau);
+        for (k, part) in self.parts(plateau).into_iter().enumerate() {
+            averaging.add(part, samples, if k == 0 { repeated } else { 0 })?;
+        }
+        averaging.finish()
     }
-    averaging.finish()
 }
 
 impl<'a> Averaging<'a> {

@@ -18,13 +18,15 @@ use mean::mean;
 pub use noise_model::{EXCLUDED, NoiseModel};
 use settling::TimeStep;
 
-/// The plateau means of a mounting in the order of the schedule, with their covariances under the session's noise.
-pub fn plateau_means(mounting: &ReducedMounting, noise: &NoiseModel) -> Vec<PlateauMean> {
-    let step = TimeStep::estimate(&mounting.plateaus, noise);
-    let cosines = fast_cosines();
-    let mean = |(plateau, speed): (&PlateauFit, &Option<f64>)| PlateauMean {
-        measured_speed: *speed,
-        ..mean(plateau, noise, &step, &noise.own_scale(plateau, &cosines))
-    };
-    mounting.plateaus.par_iter().zip(&mounting.speeds).map(mean).collect()
+impl ReducedMounting {
+    /// The plateau means of a mounting in the order of the schedule, with their covariances under the session's noise.
+    pub fn means(&self, noise: &NoiseModel) -> Vec<PlateauMean> {
+        let step = TimeStep::estimate(&self.plateaus, noise);
+        let cosines = fast_cosines();
+        let mean = |(plateau, speed): (&PlateauFit, &Option<f64>)| PlateauMean {
+            measured_speed: *speed,
+            ..mean(plateau, noise, &step, &noise.own_scale(plateau, &cosines))
+        };
+        self.plateaus.par_iter().zip(&self.speeds).map(mean).collect()
+    }
 }

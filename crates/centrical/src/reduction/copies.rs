@@ -14,19 +14,21 @@ use crate::statistics::chi_squared_tail;
 /// Fewer differences are alike by chance.
 const FEWEST: usize = 6;
 
-/// Probability that means of two records of their own are so alike: the lower tail of chi^2 of their differences. `None` where the plateaus
-/// are not as many, or too few show noise.
-pub fn chance_of_likeness(one: &[PlateauMean], other: &[PlateauMean]) -> Option<f64> {
-    if one.len() != other.len() {
-        return None;
+impl PlateauMean {
+    /// Probability that means of two records of their own are so alike: the lower tail of chi^2 of their differences. `None` where the plateaus
+    /// are not as many, or too few show noise.
+    pub fn chance_of_likeness(one: &[PlateauMean], other: &[PlateauMean]) -> Option<f64> {
+        if one.len() != other.len() {
+            return None;
+        }
+        let squares = one.iter().zip(other).filter_map(|(a, b)| {
+            let covariance = noise(a) + noise(b);
+            let difference = a.mean - b.mean;
+            Some(difference.dot(&covariance.cholesky()?.solve(&difference)))
+        });
+        let (count, chi_squared) = squares.fold((0, 0.0), |(count, sum), square| (count + 3, sum + square));
+        (count >= FEWEST).then(|| 1.0 - chi_squared_tail(chi_squared, count))
     }
-    let squares = one.iter().zip(other).filter_map(|(a, b)| {
-        let covariance = noise(a) + noise(b);
-        let difference = a.mean - b.mean;
-        Some(difference.dot(&covariance.cholesky()?.solve(&difference)))
-    });
-    let (count, chi_squared) = squares.fold((0, 0.0), |(count, sum), square| (count + 3, sum + square));
-    (count >= FEWEST).then(|| 1.0 - chi_squared_tail(chi_squared, count))
 }
 
 /// Rests that read as earlier ones do, in the same order.
@@ -38,31 +40,33 @@ pub struct RepeatedRests {
     pub count: usize,
 }
 
-/// Looks for rests that count twice: a record that was pasted twice, or copied with other times or fewer digits, or that stands beside its
-/// own table of rests. Of each rest the mean and the least standard deviation that it can have are given, zero where it is not known; pairs
-/// without any are left out.
-///
-/// At every distance in the order of rests, pairs are counted whose means differ by a chi^2 up to each of five levels. Of rests that
-/// are laid in the same attitudes again, some are by chance (binomial law). Copies are nearly all, and where two files overlap, the pairs in
-/// the overlap are far more alike than chance allows.
-pub fn repeated_rests(rests: &[(Vector3<f64>, Vector3<f64>)]) -> Option<RepeatedRests> {
-    let square = |(earlier, later): (usize, usize)| {
-        let ((one, of_one), (other, of_other)) = (rests[earlier], rests[later]);
-        let noise = of_one.sup(&of_other);
-        (noise.min() > 0.0).then(|| ((one - other).component_div(&noise).norm_squared() / 2.0, (earlier, later)))
-    };
-    let tests = (rests.len() * ALIKE.len()) as f64;
-    let repeated = (1..rests.len()).flat_map(|distance| {
-        let squares: Vec<_> = (0..rests.len() - distance).filter_map(|n| square((n, n + distance))).collect();
-        let at_level = move |level: f64| {
-            let mut alike = squares.iter().filter(|(square, _)| *square <= level).map(|(_, pair)| *pair);
-            let (first, count) = (alike.next()?, 1 + alike.count());
-            let law = Binomial::new(1.0 - chi_squared_tail(level, 3), squares.len() as u64).ok()?;
-            (tests * law.sf(count as u64 - 1) < IMPROBABLE).then_some(RepeatedRests { first, count })
+impl RepeatedRests {
+    /// Looks for rests that count twice: a record that was pasted twice, or copied with other times or fewer digits, or that stands beside its
+    /// own table of rests. Of each rest the mean and the least standard deviation that it can have are given, zero where it is not known; pairs
+    /// without any are left out.
+    ///
+    /// At every distance in the order of rests, pairs are counted whose means differ by a chi^2 up to each of five levels. Of rests that
+    /// are laid in the same attitudes again, some are by chance (binomial law). Copies are nearly all, and where two files overlap, the pairs in
+    /// the overlap are far more alike than chance allows.
+    pub fn among(rests: &[(Vector3<f64>, Vector3<f64>)]) -> Option<RepeatedRests> {
+        let square = |(earlier, later): (usize, usize)| {
+            let ((one, of_one), (other, of_other)) = (rests[earlier], rests[later]);
+            let noise = of_one.sup(&of_other);
+            (noise.min() > 0.0).then(|| ((one - other).component_div(&noise).norm_squared() / 2.0, (earlier, later)))
         };
-        ALIKE.into_iter().filter_map(at_level)
-    });
-    repeated.max_by_key(|repeated| repeated.count)
+        let tests = (rests.len() * ALIKE.len()) as f64;
+        let repeated = (1..rests.len()).flat_map(|distance| {
+            let squares: Vec<_> = (0..rests.len() - distance).filter_map(|n| square((n, n + distance))).collect();
+            let at_level = move |level: f64| {
+                let mut alike = squares.iter().filter(|(square, _)| *square <= level).map(|(_, pair)| *pair);
+                let (first, count) = (alike.next()?, 1 + alike.count());
+                let law = Binomial::new(1.0 - chi_squared_tail(level, 3), squares.len() as u64).ok()?;
+                (tests * law.sf(count as u64 - 1) < IMPROBABLE).then_some(RepeatedRests { first, count })
+            };
+            ALIKE.into_iter().filter_map(at_level)
+        });
+        repeated.max_by_key(|repeated| repeated.count)
+    }
 }
 
 /// Levels of chi^2 with three components. Of rests in one attitude 8 % stay below the first; of copies that share nineteen samples of

@@ -137,13 +137,15 @@ pub struct CoarseScale {
     pub bias: Vector3<f64>,
 }
 
-/// Coarse scale and bias by which the readings `means` of rests have the length of `gravity` [m/s^2]: the ellipsoid
-/// `sum_i ((c_i - bias_i) / scale_i)^2 = g^2` with axes along those of the instrument, by linear least squares. Scales are
-/// positive: gravity does not show the sign of an axis. `None` if the rests determine no such ellipsoid: each axis has to point
-/// up and down, about.
-pub fn coarse_scale(means: &[Vector3<f64>], gravity: f64) -> Option<CoarseScale> {
-    let Ellipsoid { centre, a } = Ellipsoid::along_axes(means)?;
-    Some(CoarseScale { scale: a.diagonal().map(|a| 1.0 / (a.sqrt() * gravity)), bias: centre })
+impl CoarseScale {
+    /// Coarse scale and bias by which the readings `means` of rests have the length of `gravity` [m/s^2]: the ellipsoid
+    /// `sum_i ((c_i - bias_i) / scale_i)^2 = g^2` with axes along those of the instrument, by linear least squares. Scales are
+    /// positive: gravity does not show the sign of an axis. `None` if the rests determine no such ellipsoid: each axis has to point
+    /// up and down, about.
+    pub fn of(means: &[Vector3<f64>], gravity: f64) -> Option<CoarseScale> {
+        let Ellipsoid { centre, a } = Ellipsoid::along_axes(means)?;
+        Some(CoarseScale { scale: a.diagonal().map(|a| 1.0 / (a.sqrt() * gravity)), bias: centre })
+    }
 }
 
 #[cfg(test)]

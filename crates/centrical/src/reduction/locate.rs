@@ -53,70 +53,72 @@ pub struct Located {
     ramps: Vec<clock::Ramp>,
 }
 
-/// Finds the scheduled plateaus of a surveyed record; telemetry adds the offset of its clock and the measured speeds.
-///
-/// # Errors
-/// [`ReductionError`] if the record is too short, a scheduled plateau is not in it, or a recording mistake explains it better.
-pub fn locate(
-    survey: &Survey,
-    telemetry: Option<&SpeedTrace>,
-    schedule: &[ScheduledPlateau],
-) -> Result<Located, ReductionError> {
-    let blocks = survey.blocks()?;
-    let align::Aligned { cores, unscheduled } = align::align(&blocks, schedule)?;
-    let ramps = clock::Ramp::all(&blocks, schedule, &cores);
-    let (clock_offset, agreement) = match telemetry {
-        Some(telemetry) => {
-            let (offset, agreement) = clock::compare(&ramps, blocks.width, schedule, telemetry);
-            (offset, Some(agreement))
+impl Survey {
+    /// Finds the scheduled plateaus of a surveyed record; telemetry adds the offset of its clock and the measured speeds.
+    ///
+    /// # Errors
+    /// [`ReductionError`] if the record is too short, a scheduled plateau is not in it, or a recording mistake explains it better.
+    pub fn locate(
+        &self,
+        telemetry: Option<&SpeedTrace>,
+        schedule: &[ScheduledPlateau],
+    ) -> Result<Located, ReductionError> {
+        let blocks = self.blocks()?;
+        let align::Aligned { cores, unscheduled } = align::align(&blocks, schedule)?;
+        let ramps = clock::Ramp::all(&blocks, schedule, &cores);
+        let (clock_offset, agreement) = match telemetry {
+            Some(telemetry) => {
+                let (offset, agreement) = clock::compare(&ramps, blocks.width, schedule, telemetry);
+                (offset, Some(agreement))
+            }
+            None => (None, None),
+        };
+        let window::Windows { plateaus: windows, settling_time } = window::refine(&blocks, schedule, &cores)?;
+        let speed = |window: &Window| clock::median_speed(telemetry?, clock_offset.as_ref()?, window.span);
+        let speeds = windows.iter().map(speed).collect();
+        let readings = vec![None; schedule.len()];
+        let schedule = schedule.to_vec();
+        let mut located = Located {
+            blocks,
+            windows,
+            settling_time,
+            speeds,
+            clock_offset,
+            agreement,
+            readings,
+            unscheduled,
+            schedule,
+            ramps,
+        };
+        if let (Some(telemetry), Some(offset), true) = (telemetry, clock_offset, located.is_of_the_record()) {
+            let (margin, step) = (located.margin(&telemetry.t), telemetry.step());
+            located.read(|window| telemetry.speed(&offset, window, margin, step));
         }
-        None => (None, None),
-    };
-    let window::Windows { plateaus: windows, settling_time } = window::refine(&blocks, schedule, &cores)?;
-    let speed = |window: &Window| clock::median_speed(telemetry?, clock_offset.as_ref()?, window.span);
-    let speeds = windows.iter().map(speed).collect();
-    let readings = vec![None; schedule.len()];
-    let schedule = schedule.to_vec();
-    let mut located = Located {
-        blocks,
-        windows,
-        settling_time,
-        speeds,
-        clock_offset,
-        agreement,
-        readings,
-        unscheduled,
-        schedule,
-        ramps,
-    };
-    if let (Some(telemetry), Some(offset), true) = (telemetry, clock_offset, located.is_of_the_record()) {
-        let (margin, step) = (located.margin(&telemetry.t), telemetry.step());
-        located.read(|window| telemetry.speed(&offset, window, margin, step));
+        Ok(located)
     }
-    Ok(located)
-}
 
-/// Finds the rests of a surveyed record without a schedule: wherever the unit stood still. With `turning`, what turns slowly between them
-/// as well, in arcs.
-///
-/// # Errors
-/// [`ReductionError::TooShort`] if the record is too short.
-pub fn locate_rests(survey: &Survey, turning: bool) -> Result<Located, ReductionError> {
-    let blocks = survey.blocks()?;
-    let mut rests = rests::rests(&blocks);
-    rests.retain(|rest| !turning || turning::is_still(&blocks, rest));
-    let arcs = if turning { turning::arcs(&blocks, &rests) } else { Vec::new() };
-    Ok(Located::without_schedule(blocks, &rests, &arcs))
-}
+    /// Finds the rests of a surveyed record without a schedule: wherever the unit stood still. With `turning`, what turns slowly between them
+    /// as well, in arcs.
+    ///
+    /// # Errors
+    /// [`ReductionError::TooShort`] if the record is too short.
+    pub fn locate_rests(&self, turning: bool) -> Result<Located, ReductionError> {
+        let blocks = self.blocks()?;
+        let mut rests = rests::rests(&blocks);
+        rests.retain(|rest| !turning || turning::is_still(&blocks, rest));
+        let arcs = if turning { turning::arcs(&blocks, &rests) } else { Vec::new() };
+        Ok(Located::without_schedule(blocks, &rests, &arcs))
+    }
 
-/// Stretches of a surveyed record, from and to [s], as if they were rests.
-pub(super) fn locate_spans(survey: &Survey, spans: &[[f64; 2]]) -> Result<Located, ReductionError> {
-    let located = Located::without_schedule(survey.blocks()?, &[], &[]);
-    let window = |span: &[f64; 2]| {
-        let shape = Shape { start: span[0], omega: 0.0, settling: None, turning: None };
-        Window { span: *span, shape }
-    };
-    Ok(Located { windows: spans.iter().map(window).collect(), ..located })
+    /// Stretches of a surveyed record, from and to [s], as if they were rests.
+    pub(super) fn locate_spans(&self, spans: &[[f64; 2]]) -> Result<Located, ReductionError> {
+        let located = Located::without_schedule(self.blocks()?, &[], &[]);
+        let window = |span: &[f64; 2]| {
+            let shape = Shape { start: span[0], omega: 0.0, settling: None, turning: None };
+            Window { span: *span, shape }
+        };
+        Ok(Located { windows: spans.iter().map(window).collect(), ..located })
+    }
 }
 
 impl Located {

@@ -2,11 +2,11 @@
 
 use nalgebra::Vector3;
 
-use super::average::{PlateauFit, ReducedMounting, average};
-use super::colour::{NoiseModel, plateau_means};
+use super::average::{PlateauFit, ReducedMounting};
+use super::colour::NoiseModel;
 use super::ellipsoid::Ellipsoid;
 use super::error::ReductionError;
-use super::locate::{Located, locate_rests};
+use super::locate::Located;
 use super::plateau::PlateauMean;
 use super::record::RecordSlice;
 use super::survey::Survey;
@@ -42,64 +42,66 @@ impl<'a> From<RecordSlice<'a>> for RestRecord<'a> {
     }
 }
 
-/// The means of the rests of some records. The colour of the noise is pooled over all of them. A rest whose samples are not steady
-/// is left out. Arcs of slow rotation count if the attitudes of all show an ellipsoid. `progress` is asked again and again.
-///
-/// # Errors
-/// [`ReductionError`] if a record is invalid (lengths, times), too short, or stuck or saturated in a rest, or when the caller stops.
-pub fn reduce_rests(records: &[RestRecord], progress: OnProgress<()>) -> Result<Rests, ReductionError> {
-    let located = records.iter().map(|record| {
-        let located = locate_rests(&Survey::of(record.samples)?, record.turning_radius.is_some())?;
-        let fits = averaged(&located, record, progress)?;
-        Ok((located, fits))
-    });
-    let mut located: Vec<(Located, Vec<PlateauFit>)> = located.collect::<Result<_, ReductionError>>()?;
-    if Ellipsoid::through(&means_of(&located)).is_none() {
-        for (_, fits) in &mut located {
-            fits.retain(|fit| !fit.turns());
+impl Rests {
+    /// The means of the rests of some records. The colour of the noise is pooled over all of them. A rest whose samples are not steady
+    /// is left out. Arcs of slow rotation count if the attitudes of all show an ellipsoid. `progress` is asked again and again.
+    ///
+    /// # Errors
+    /// [`ReductionError`] if a record is invalid (lengths, times), too short, or stuck or saturated in a rest, or when the caller stops.
+    pub fn of(records: &[RestRecord], progress: OnProgress<()>) -> Result<Rests, ReductionError> {
+        let located = records.iter().map(|record| {
+            let located = Survey::of(record.samples)?.locate_rests(record.turning_radius.is_some())?;
+            let fits = averaged(&located, record, progress)?;
+            Ok((located, fits))
+        });
+        let mut located: Vec<(Located, Vec<PlateauFit>)> = located.collect::<Result<_, ReductionError>>()?;
+        if Ellipsoid::through(&means_of(&located)).is_none() {
+            for (_, fits) in &mut located {
+                fits.retain(|fit| !fit.turns());
+            }
         }
-    }
-    let coarse = Ellipsoid::nearest(&means_of(&located));
-    let of_record = |(record, (located, fits)): (&RestRecord, &(Located, Vec<PlateauFit>))| {
-        let white = white_noise(record.samples, fits, &coarse, located.sample_noise());
-        let part = AttitudePart::of(record.samples, fits, &coarse, &white);
-        ((white, part), uncertain_sizes(fits, &white, &coarse, part))
-    };
-    let (trembling, uncertain): (Vec<_>, Vec<_>) = records.iter().zip(&located).map(of_record).unzip();
-    advance(progress, ())?;
-    let with_noise = located
-        .iter_mut()
-        .zip(&trembling)
-        .flat_map(|((_, fits), (white, part))| fits.iter_mut().map(move |fit| (fit, *white, part.mean)));
-    let ellipsoid = draw_out(with_noise, coarse);
-    advance(progress, ())?;
-    let mut along = Vec::new();
-    for (record, (located, fits)) in records.iter().zip(&located) {
-        along.extend(noise_along(record.samples, fits, &ellipsoid, located.sample_noise())?);
-    }
-    let reduced = located.into_iter().map(|(located, fits)| {
-        let of_rest = |fit: PlateauFit| {
-            let along = ellipsoid.normal(&fit.mean);
-            fit.of_rest(&along, located.sample_noise())
+        let coarse = Ellipsoid::nearest(&means_of(&located));
+        let of_record = |(record, (located, fits)): (&RestRecord, &(Located, Vec<PlateauFit>))| {
+            let white = white_noise(record.samples, fits, &coarse, located.sample_noise());
+            let part = AttitudePart::of(record.samples, fits, &coarse, &white);
+            ((white, part), uncertain_sizes(fits, &white, &coarse, part))
         };
-        let rests = fits.into_iter().map(of_rest).collect();
-        ReducedMounting::of_rests(located, rests)
-    });
-    let reduced: Vec<ReducedMounting> = reduced.collect();
-    advance(progress, ())?;
-    let noise = NoiseModel::pool_rests(&reduced, &along);
-    advance(progress, ())?;
-    let means = reduced.iter().zip(&uncertain).map(|(record, uncertain)| {
-        let mut means = plateau_means(record, &noise);
-        for (mean, variance) in means.iter_mut().zip(uncertain) {
-            let along = ellipsoid.normal(&mean.mean);
-            mean.covariance += along * along.transpose() * *variance;
+        let (trembling, uncertain): (Vec<_>, Vec<_>) = records.iter().zip(&located).map(of_record).unzip();
+        advance(progress, ())?;
+        let with_noise = located
+            .iter_mut()
+            .zip(&trembling)
+            .flat_map(|((_, fits), (white, part))| fits.iter_mut().map(move |fit| (fit, *white, part.mean)));
+        let ellipsoid = draw_out(with_noise, coarse);
+        advance(progress, ())?;
+        let mut along = Vec::new();
+        for (record, (located, fits)) in records.iter().zip(&located) {
+            along.extend(noise_along(record.samples, fits, &ellipsoid, located.sample_noise())?);
         }
-        means
-    });
-    let means = means.collect();
-    advance(progress, ())?;
-    Ok(Rests { means, noise_at_most: noise.at_most(&reduced) })
+        let reduced = located.into_iter().map(|(located, fits)| {
+            let of_rest = |fit: PlateauFit| {
+                let along = ellipsoid.normal(&fit.mean);
+                fit.of_rest(&along, located.sample_noise())
+            };
+            let rests = fits.into_iter().map(of_rest).collect();
+            ReducedMounting::of_rests(located, rests)
+        });
+        let reduced: Vec<ReducedMounting> = reduced.collect();
+        advance(progress, ())?;
+        let noise = NoiseModel::pool_rests(&reduced, &along);
+        advance(progress, ())?;
+        let means = reduced.iter().zip(&uncertain).map(|(record, uncertain)| {
+            let mut means = record.means(&noise);
+            for (mean, variance) in means.iter_mut().zip(uncertain) {
+                let along = ellipsoid.normal(&mean.mean);
+                mean.covariance += along * along.transpose() * *variance;
+            }
+            means
+        });
+        let means = means.collect();
+        advance(progress, ())?;
+        Ok(Rests { means, noise_at_most: noise.at_most(&reduced) })
+    }
 }
 
 /// The means of all records.
@@ -131,7 +133,7 @@ fn averaged(
     let mut fits = Vec::new();
     for rest in 0..located.windows().len() {
         advance(progress, ())?;
-        match average(located, rest, record.samples, 0) {
+        match located.average(rest, record.samples, 0) {
             Err(beyond @ (ReductionError::Saturated { .. } | ReductionError::Stuck { .. })) => return Err(beyond),
             fit => fits.extend(fit.ok().filter(is_smooth)),
         }

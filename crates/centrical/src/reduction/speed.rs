@@ -18,27 +18,29 @@ pub struct MeasuredSpeed {
     pub slope: Option<[f64; 2]>,
 }
 
-/// The speeds of plateaus that were set to `set` [rad/s], any sign. Plateaus set alike have one variance of a sample: a
-/// plateau alone has a dozen degrees of freedom, too few for a weight in the fit.
-pub fn measured_speeds(set: &[f64], readings: &[Option<SpeedReading>]) -> Vec<Option<MeasuredSpeed>> {
-    let pairs = || set.iter().zip(readings).filter_map(|(set, reading)| Some((set.abs(), reading.as_ref()?)));
-    let pooled = |speed: f64| {
-        let alike = pairs().filter(|(set, _)| (set - speed).abs() <= 1e-9 * speed);
-        let (freedom, squares) = alike.fold((0, 0.0), |(freedom, squares), (_, reading)| {
-            let own = reading.degrees_of_freedom;
-            (freedom + own, squares + own as f64 * reading.sample_variance)
-        });
-        (squares / freedom as f64, freedom)
-    };
-    let measured = |(set, reading): (&f64, &Option<SpeedReading>)| {
-        let reading = reading.as_ref().filter(|reading| reading.speed > 0.0)?;
-        let (variance, degrees_of_freedom) = pooled(set.abs());
-        // A step is a rectangular error (GUM, F.2.2.1).
-        let step_uncertainty = reading.resolution / 12.0_f64.sqrt() / reading.speed;
-        let scatter = (variance * reading.gain).sqrt() / reading.speed;
-        let uncertainty = scatter.hypot(step_uncertainty);
-        let slope = reading.slope.map(|slope| slope.map(|slope| slope / reading.speed));
-        Some(MeasuredSpeed { speed: reading.speed, uncertainty, degrees_of_freedom, step_uncertainty, slope })
-    };
-    set.iter().zip(readings).map(measured).collect()
+impl MeasuredSpeed {
+    /// The speeds of plateaus that were set to `set` [rad/s], any sign. Plateaus set alike have one variance of a sample: a
+    /// plateau alone has a dozen degrees of freedom, too few for a weight in the fit.
+    pub fn of_all(set: &[f64], readings: &[Option<SpeedReading>]) -> Vec<Option<MeasuredSpeed>> {
+        let pairs = || set.iter().zip(readings).filter_map(|(set, reading)| Some((set.abs(), reading.as_ref()?)));
+        let pooled = |speed: f64| {
+            let alike = pairs().filter(|(set, _)| (set - speed).abs() <= 1e-9 * speed);
+            let (freedom, squares) = alike.fold((0, 0.0), |(freedom, squares), (_, reading)| {
+                let own = reading.degrees_of_freedom;
+                (freedom + own, squares + own as f64 * reading.sample_variance)
+            });
+            (squares / freedom as f64, freedom)
+        };
+        let measured = |(set, reading): (&f64, &Option<SpeedReading>)| {
+            let reading = reading.as_ref().filter(|reading| reading.speed > 0.0)?;
+            let (variance, degrees_of_freedom) = pooled(set.abs());
+            // A step is a rectangular error (GUM, F.2.2.1).
+            let step_uncertainty = reading.resolution / 12.0_f64.sqrt() / reading.speed;
+            let scatter = (variance * reading.gain).sqrt() / reading.speed;
+            let uncertainty = scatter.hypot(step_uncertainty);
+            let slope = reading.slope.map(|slope| slope.map(|slope| slope / reading.speed));
+            Some(MeasuredSpeed { speed: reading.speed, uncertainty, degrees_of_freedom, step_uncertainty, slope })
+        };
+        set.iter().zip(readings).map(measured).collect()
+    }
 }

@@ -45,24 +45,26 @@ pub struct Staircase {
     pub highest: f64,
 }
 
-/// Whether a signal moves from one steady stretch to another: it stands still for half of the time, at values that differ by
-/// more than a hundred times the noise of a sample and a twentieth of the largest. Drift and noise of any colour do not.
-/// `progress` is asked again and again.
-///
-/// # Errors
-/// [`Stopped`] when the caller stops the search.
-pub fn staircase(t: &[f64], y: &[f64], progress: OnProgress<()>) -> Result<Option<Staircase>, Stopped> {
-    let mut steps = steps(y);
-    advance(progress, ())?;
-    let noise = NOISE_OF_STEPS * watched_median(&mut steps, progress)?;
-    let stretches = stretches(&blocks(t, y), noise);
-    advance(progress, ())?;
-    let still: f64 = stretches.iter().map(|stretch| stretch.window[1] - stretch.window[0]).sum();
-    let values = stretches.iter().map(|stretch| stretch.value);
-    let [lowest, highest] = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], v| [a.min(v), b.max(v)]);
-    let is_apart = highest - lowest > (100.0 * noise).max(0.05 * lowest.abs().max(highest.abs()));
-    let is_still = t.first().zip(t.last()).is_some_and(|(first, last)| 2.0 * still >= last - first);
-    Ok((is_apart && is_still).then_some(Staircase { stretches: stretches.len(), lowest, highest }))
+impl Staircase {
+    /// Whether a signal moves from one steady stretch to another: it stands still for half of the time, at values that differ by
+    /// more than a hundred times the noise of a sample and a twentieth of the largest. Drift and noise of any colour do not.
+    /// `progress` is asked again and again.
+    ///
+    /// # Errors
+    /// [`Stopped`] when the caller stops the search.
+    pub fn of(t: &[f64], y: &[f64], progress: OnProgress<()>) -> Result<Option<Staircase>, Stopped> {
+        let mut steps = steps(y);
+        advance(progress, ())?;
+        let noise = NOISE_OF_STEPS * watched_median(&mut steps, progress)?;
+        let stretches = stretches(&blocks(t, y), noise);
+        advance(progress, ())?;
+        let still: f64 = stretches.iter().map(|stretch| stretch.window[1] - stretch.window[0]).sum();
+        let values = stretches.iter().map(|stretch| stretch.value);
+        let [lowest, highest] = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], v| [a.min(v), b.max(v)]);
+        let is_apart = highest - lowest > (100.0 * noise).max(0.05 * lowest.abs().max(highest.abs()));
+        let is_still = t.first().zip(t.last()).is_some_and(|(first, last)| 2.0 * still >= last - first);
+        Ok((is_apart && is_still).then_some(Staircase { stretches: stretches.len(), lowest, highest }))
+    }
 }
 
 /// Mean of consecutive samples.
@@ -72,9 +74,11 @@ struct Block {
     samples: usize,
 }
 
-/// The steady stretches of a signal `y` over the times `t` [s], which do not decrease; as many samples as there are of both.
-pub fn steady_stretches(t: &[f64], y: &[f64]) -> Vec<SteadyStretch> {
-    stretches(&blocks(t, y), NOISE_OF_STEPS * median(&mut steps(y)))
+impl SteadyStretch {
+    /// The steady stretches of a signal `y` over the times `t` [s], which do not decrease; as many samples as there are of both.
+    pub fn all(t: &[f64], y: &[f64]) -> Vec<SteadyStretch> {
+        stretches(&blocks(t, y), NOISE_OF_STEPS * median(&mut steps(y)))
+    }
 }
 
 /// The stretches of blocks that stand still, samples having this noise.

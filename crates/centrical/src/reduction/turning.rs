@@ -23,10 +23,10 @@ use std::f64::consts::TAU;
 
 use nalgebra::{DMatrix, DVector, Vector3};
 
-use super::average::{PlateauFit, average};
+use super::average::PlateauFit;
 use super::ellipsoid::Ellipsoid;
 use super::error::ReductionError;
-use super::locate::{Interval, TURNING, locate_spans};
+use super::locate::{Interval, TURNING};
 use super::record::{Record, RecordSlice};
 use super::survey::Survey;
 use crate::model::STANDARD_GRAVITY;
@@ -134,8 +134,8 @@ pub(super) fn noise_along(
     };
     let noise: Vec<f64> = (0..record.t.len()).map(noise).collect();
     let noise = Record { t: record.t.to_vec(), f_z: [noise.clone(), noise.clone(), noise] };
-    let located = locate_spans(&Survey::of(noise.as_slice())?, &spans)?;
-    Ok((0..spans.len()).filter_map(|span| average(&located, span, noise.as_slice(), 0).ok()).collect())
+    let located = Survey::of(noise.as_slice())?.locate_spans(&spans)?;
+    Ok((0..spans.len()).filter_map(|span| located.average(span, noise.as_slice(), 0).ok()).collect())
 }
 
 /// Time of a whole turn at the mean rate [s].

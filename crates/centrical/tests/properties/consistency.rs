@@ -2,7 +2,7 @@
 
 use centrical::plan::Normalised;
 use centrical::position::ThirdPosition;
-use centrical::reduction::{NoiseModel, PlateauMean, Record, ReducedMounting, ScheduledPlateau, plateau_means, reduce};
+use centrical::reduction::{NoiseModel, PlateauMean, Record, ReducedMounting, ScheduledPlateau};
 use centrical::simulate::{Coloured, Equipment, Losses, Machine, Recorder, Sensor, Simulation, Spikes, draw_truth};
 use centrical::{Fit, MeasurementModel, Observation, PairRelation, linear};
 use nalgebra::{DVector, Matrix3};
@@ -82,11 +82,11 @@ fn means(model: &MeasurementModel, truth: &[f64], seed: u64) -> Vec<PlateauMean>
             let schedule: Vec<ScheduledPlateau> = of_mounting
                 .map(|s| ScheduledPlateau { omega: s.omega, nominal_z: linear::nominal(experiment, s) })
                 .collect();
-            reduce(&record(&simulation, m), None, &schedule).unwrap_or_else(|e| panic!("session {seed}, {m}: {e}"))
+            record(&simulation, m).reduce(None, &schedule).unwrap_or_else(|e| panic!("session {seed}, {m}: {e}"))
         })
         .collect();
     let noise = NoiseModel::pool(&reduced);
-    reduced.iter().flat_map(|mounting| plateau_means(mounting, &noise)).collect()
+    reduced.iter().flat_map(|mounting| mounting.means(&noise)).collect()
 }
 
 /// Calibration from plateau means, each with the covariance that `covariance` gives it.

@@ -1,13 +1,13 @@
 //! Records that were taken down by mistake are named for what they are, and good ones are not blamed.
 
 use centrical::STANDARD_GRAVITY;
-use centrical::reduction::{NoiseModel, Record, ReductionError, plateau_means, reduce};
+use centrical::reduction::{NoiseModel, Record, ReductionError};
 
 use crate::stream::Stream;
 
 /// What is wrong with the record, in words; nothing if it is reduced.
 fn verdict(stream: &Stream, record: &Record) -> Option<String> {
-    reduce(record, None, &stream.schedule()).err().map(|error| error.to_string())
+    record.reduce(None, &stream.schedule()).err().map(|error| error.to_string())
 }
 
 fn changed(stream: &Stream, change: impl Fn(&mut [Vec<f64>; 3])) -> Record {
@@ -73,7 +73,7 @@ fn the_sense_of_rotation_is_seen_in_the_ramps() {
         for plateau in &mut schedule {
             plateau.omega = -plateau.omega;
         }
-        let error = reduce(&record, None, &schedule).expect_err("the record turns the other way");
+        let error = record.reduce(None, &schedule).expect_err("the record turns the other way");
         let ReductionError::Rotation { ramps, part } = error else { panic!("{error}") };
         assert_eq!(ramps, 5);
         assert!((part + 1.0).abs() < 0.1, "{part}");
@@ -99,7 +99,7 @@ fn a_saturated_plateau_is_named() {
     // The range ends a standard deviation beyond what the fastest plateau reads: a sixth is cut off.
     let end = top - 2e-3;
     let cut_off = |end: f64| changed(&stream, |f| f[0].iter_mut().for_each(|f| *f = f.max(end)));
-    let error = reduce(&cut_off(end), None, &stream.schedule()).expect_err("the record is cut off");
+    let error = cut_off(end).reduce(None, &stream.schedule()).expect_err("the record is cut off");
     let ReductionError::Saturated { index: 4, axis: 0, value, piled_up, samples, .. } = error else {
         panic!("{error}")
     };
@@ -134,8 +134,8 @@ fn gaps_repeats_and_spikes_are_counted() {
             }
         }
     }
-    let reduced = reduce(&record, None, &stream.schedule()).expect("the plateau is there");
-    let means = plateau_means(&reduced, &NoiseModel::pool([&reduced]));
+    let reduced = record.reduce(None, &stream.schedule()).expect("the plateau is there");
+    let means = reduced.means(&NoiseModel::pool([&reduced]));
     let found = means[1].left_out;
     assert_eq!((found.missing, found.repeated, found.spikes, found.stuck), (200, 100, 5, 0));
     let error = means[1].mean - stream.truth(1);
@@ -149,8 +149,8 @@ fn gaps_repeats_and_spikes_are_counted() {
 #[test]
 fn a_plateau_cut_short_is_used_or_named() {
     let stream = Stream { lengths: vec![10.0, 10.0, 3.0, 10.0, 10.0, 10.0], ..Stream::default() };
-    let reduced = reduce(&stream.record(), None, &stream.schedule()).expect("three seconds are enough");
-    let window = plateau_means(&reduced, &NoiseModel::pool([&reduced]))[2].window;
+    let reduced = stream.record().reduce(None, &stream.schedule()).expect("three seconds are enough");
+    let window = reduced.means(&NoiseModel::pool([&reduced]))[2].window;
     let [start, end] = stream.windows()[2];
     assert!(window[0] >= start && window[1] <= end && window[1] - window[0] > 0.5, "{window:?} in {start} {end}");
     let short = Stream { lengths: vec![10.0, 10.0, 0.3, 10.0, 10.0, 10.0], ..Stream::default() };
@@ -172,8 +172,8 @@ fn robust_location_is_as_efficient_as_the_mean() {
             f[0].iter_mut().enumerate().filter(|(i, _)| i * 7919 % 10 == 3).for_each(|(_, f)| *f += 30.0);
         });
         let means = |record: &Record| {
-            let reduced = reduce(record, None, &stream.schedule()).expect("the plateaus are there");
-            plateau_means(&reduced, &NoiseModel::pool([&reduced]))
+            let reduced = record.reduce(None, &stream.schedule()).expect("the plateaus are there");
+            reduced.means(&NoiseModel::pool([&reduced]))
         };
         for (means, record, sum) in [(means(&record), &record, &mut clean), (means(&dirty), &dirty, &mut spiked)] {
             for k in [0, 5] {

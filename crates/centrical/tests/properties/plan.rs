@@ -3,7 +3,7 @@ use centrical::plan::{
     Robustness, Scenario, Schedule, Visit, best_for_time, predict, shortest_for_goals,
 };
 use centrical::position::{Position, ThirdPosition, kozlov_2017};
-use centrical::reduction::{NoiseModel, Record, ScheduledPlateau, plateau_means, reduce};
+use centrical::reduction::{NoiseModel, Record, ScheduledPlateau};
 use centrical::simulate::{Machine, Recorder, Sensor, Simulation};
 use centrical::uncertainty::{Compensated, Method, Settings, monte_carlo};
 use centrical::{
@@ -573,11 +573,11 @@ fn calibration_means(
             let there = experiment.set_points.iter().filter(|s| s.mounting == m);
             let scheduled =
                 |s: &SetPoint| ScheduledPlateau { omega: s.omega, nominal_z: linear::nominal(experiment, s) };
-            reduce(&record, None, &there.map(scheduled).collect::<Vec<_>>()).unwrap()
+            record.reduce(None, &there.map(scheduled).collect::<Vec<_>>()).unwrap()
         })
         .collect();
     let pooled = NoiseModel::pool(&reduced);
-    let means = reduced.iter().flat_map(|mounting| plateau_means(mounting, &pooled));
+    let means = reduced.iter().flat_map(|mounting| mounting.means(&pooled));
     let observation = |(set_point, mean): (usize, centrical::reduction::PlateauMean)| Observation {
         set_point,
         mean: mean.mean,

@@ -2,8 +2,7 @@
 //! words where a plateau is not there.
 
 use centrical::reduction::{
-    Averaging, NoiseModel, PlateauMean, Record, ReducedMounting, ReductionError, Survey, average, locate,
-    measured_speeds, plateau_means, reduce,
+    Averaging, MeasuredSpeed, NoiseModel, PlateauMean, Record, ReducedMounting, ReductionError, Survey,
 };
 use nalgebra::Vector3;
 
@@ -42,7 +41,7 @@ fn session(stream: &Stream, seed: u64) -> Vec<(Stream, ReducedMounting)> {
 }
 
 fn reduced(stream: &Stream) -> ReducedMounting {
-    match reduce(&stream.record(), None, &stream.schedule()) {
+    match stream.record().reduce(None, &stream.schedule()) {
         Ok(reduced) => reduced,
         Err(error) => panic!("{stream:?}: {error}"),
     }
@@ -54,7 +53,7 @@ fn pooled(session: &[(Stream, ReducedMounting)]) -> NoiseModel {
 
 fn means(session: &[(Stream, ReducedMounting)]) -> Vec<(&Stream, usize, PlateauMean)> {
     let noise = pooled(session);
-    let of = |reduced: &ReducedMounting| plateau_means(reduced, &noise).into_iter().enumerate().collect();
+    let of = |reduced: &ReducedMounting| reduced.means(&noise).into_iter().enumerate().collect();
     let all: Vec<Vec<(usize, PlateauMean)>> = session.iter().map(|(_, reduced)| of(reduced)).collect();
     session.iter().zip(all).flat_map(|((s, _), means)| means.into_iter().map(move |(k, mean)| (s, k, mean))).collect()
 }
@@ -186,8 +185,8 @@ fn spikes_do_not_move_means() {
                 record.f_z[(3.0 * random.uniform()) as usize][i] += 30.0 + 100.0 * random.uniform();
             }
         }
-        let spiked = reduce(&record, None, &stream.schedule()).expect("spikes hide no plateau");
-        let spiked = plateau_means(&spiked, &noise);
+        let spiked = record.reduce(None, &stream.schedule()).expect("spikes hide no plateau");
+        let spiked = spiked.means(&noise);
         // Samples that are left out move the mean as well: by the root of their share of its standard error.
         let moved = (spiked[k].mean - mean.mean).component_div(&mean.covariance.diagonal().map(f64::sqrt));
         squares.push(moved.norm_squared() / 3.0);
@@ -267,13 +266,13 @@ fn the_tail_of_the_settling_is_no_drift() {
 fn a_speed_that_runs_is_no_settling() {
     for (settling, length) in [(0.0, 30.0), (1e-4, 30.0), (0.0, 10.0)] {
         let stream = Stream { settling: (settling, 0.4), running: 1e-4, lengths: vec![length; 6], ..Stream::default() };
-        let reduced = reduce(&stream.record(), Some(&stream.telemetry(0.0)), &stream.schedule()).unwrap();
+        let reduced = stream.record().reduce(Some(&stream.telemetry(0.0)), &stream.schedule()).unwrap();
         assert_eq!(reduced.settling_time(), None, "{settling}, {length}");
-        for (k, mean) in plateau_means(&reduced, &NoiseModel::pool([&reduced])).iter().enumerate() {
+        for (k, mean) in reduced.means(&NoiseModel::pool([&reduced])).iter().enumerate() {
             let (error, run) = ((mean.mean - stream.truth(k)).norm(), 2e-4 * stream.truth(k).norm());
             assert!(error < 0.1 * run + 5e-4, "{settling}, {length}, plateau {k}: {error} of {run}");
         }
-        let speeds = measured_speeds(&stream.omegas, reduced.speed_readings());
+        let speeds = MeasuredSpeed::of_all(&stream.omegas, reduced.speed_readings());
         for speed in speeds.into_iter().flatten() {
             let [slope, uncertainty] = speed.slope.expect("hundreds of reports");
             let error = slope - 1e-4 / length;
@@ -301,12 +300,12 @@ fn the_clock_offset_comes_from_the_ramps() {
     for offset in [-1.7, 0.0, 0.3, 25.0] {
         let stream = Stream::default().rough();
         let telemetry = stream.telemetry(offset);
-        let reduced = reduce(&stream.record(), Some(&telemetry), &stream.schedule()).expect("plateaus are there");
+        let reduced = stream.record().reduce(Some(&telemetry), &stream.schedule()).expect("plateaus are there");
         let found = reduced.clock_offset().expect("ramps are in both");
         assert_eq!(found.ramps, 5);
         // A twentieth of a block.
         assert!((found.seconds - offset).abs() < 5e-3, "{found:?}");
-        for (mean, omega) in plateau_means(&reduced, &NoiseModel::pool([&reduced])).iter().zip(&stream.omegas) {
+        for (mean, omega) in reduced.means(&NoiseModel::pool([&reduced])).iter().zip(&stream.omegas) {
             let speed = mean.measured_speed.expect("telemetry covers the record");
             assert!((speed - omega).abs() < 1e-4 * omega + 1e-9, "{speed} {omega}");
         }
@@ -318,7 +317,7 @@ fn the_same_record_gives_the_same_bits() {
     let stream = Stream { colour: (1e-3, 0.5), ..Stream::default() }.rough();
     let twice = [0, 1].map(|_| {
         let reduced = reduced(&stream);
-        plateau_means(&reduced, &NoiseModel::pool([&reduced]))
+        reduced.means(&NoiseModel::pool([&reduced]))
     });
     assert_eq!(twice[0], twice[1]);
 }
@@ -328,7 +327,7 @@ fn the_same_record_gives_the_same_bits() {
 fn in_stretches_as_whole() {
     let stream = Stream { colour: (1e-3, 0.5), repeats: 0.01, ..Stream::default() }.rough();
     let (record, schedule) = (stream.record(), stream.schedule());
-    let whole = reduce(&record, None, &schedule).expect("plateaus are there");
+    let whole = record.reduce(None, &schedule).expect("plateaus are there");
     let noise = NoiseModel::pool([&whole]);
     for length in [1, 7, 64, 1000, 4099] {
         let mut survey = Survey::new(&record.t);
@@ -339,16 +338,12 @@ fn in_stretches_as_whole() {
             from = to;
         }
         survey.finish();
-        let located = locate(&survey, None, &schedule).expect("plateaus are there");
+        let located = survey.locate(None, &schedule).expect("plateaus are there");
         let windows = located.windows();
         let average =
-            |k: usize| average(&located, k, record.as_slice().between(windows[k]), 0).expect("a steady plateau");
+            |k: usize| located.average(k, record.as_slice().between(windows[k]), 0).expect("a steady plateau");
         let averaged = (0..windows.len()).map(average).collect();
-        assert_eq!(
-            plateau_means(&ReducedMounting::new(located, averaged), &noise),
-            plateau_means(&whole, &noise),
-            "stretches of {length}"
-        );
+        assert_eq!(ReducedMounting::new(located, averaged).means(&noise), whole.means(&noise), "stretches of {length}");
     }
 }
 
@@ -360,12 +355,12 @@ fn in_parts_as_whole() {
     for (name, stream) in kinds().into_iter().filter(|(name, _)| !name.starts_with("below")) {
         let stream = Stream { repeats: 0.01, ..stream };
         let (record, schedule) = (stream.record(), stream.schedule());
-        let whole = reduce(&record, None, &schedule).expect("plateaus are there");
+        let whole = record.reduce(None, &schedule).expect("plateaus are there");
         let noise = NoiseModel::pool([&whole]);
         let mut survey = Survey::new(&record.t);
         survey.append(survey.condense(record.as_slice()));
         survey.finish();
-        let located = locate(&survey, None, &schedule).expect("plateaus are there");
+        let located = survey.locate(None, &schedule).expect("plateaus are there");
         let of_parts = |(k, [from, to]): (usize, [f64; 2])| {
             let mut plateau = Averaging::new(&located, k);
             let cuts = [from, from + 0.4 * (to - from), from + 0.75 * (to - from), to];
@@ -376,8 +371,8 @@ fn in_parts_as_whole() {
             plateau.finish().expect("a steady plateau")
         };
         let averaged = located.windows().into_iter().enumerate().map(of_parts).collect();
-        let in_parts = plateau_means(&ReducedMounting::new(located, averaged), &noise);
-        for (k, (part, whole)) in in_parts.iter().zip(plateau_means(&whole, &noise)).enumerate() {
+        let in_parts = ReducedMounting::new(located, averaged).means(&noise);
+        for (k, (part, whole)) in in_parts.iter().zip(whole.means(&noise)).enumerate() {
             let off = (part.mean - whole.mean).component_div(&whole.covariance.diagonal().map(f64::sqrt));
             assert!(off.amax() < 0.5, "{name}, {k}: {off}");
             squares.push(off.norm_squared() / 3.0);
@@ -398,8 +393,8 @@ fn a_clock_that_starts_late_costs_nothing() {
     let stream = Stream::default();
     let (record, schedule) = (stream.record(), stream.schedule());
     let means = |record: &Record| {
-        let reduced = reduce(record, None, &schedule).expect("plateaus are there");
-        plateau_means(&reduced, &NoiseModel::pool([&reduced]))
+        let reduced = record.reduce(None, &schedule).expect("plateaus are there");
+        reduced.means(&NoiseModel::pool([&reduced]))
     };
     let expected = means(&record);
     for stutter in [0.0, 1e-12] {
@@ -434,8 +429,8 @@ fn two_rests_with_a_turn_between_are_two() {
     };
     let mut schedule = run.schedule();
     schedule.remove(1);
-    let reduced = reduce(&run.record(), None, &schedule).expect("all four are there");
-    let means = plateau_means(&reduced, &NoiseModel::pool([&reduced]));
+    let reduced = run.record().reduce(None, &schedule).expect("all four are there");
+    let means = reduced.means(&NoiseModel::pool([&reduced]));
     for (mean, k) in means.iter().zip([0, 2, 3, 4]) {
         let [start, end] = run.windows()[k];
         assert!(mean.window[0] >= start - 0.1 && mean.window[1] <= end + 0.1, "{:?} {start} {end}", mean.window);
@@ -454,8 +449,8 @@ fn of_a_plateau_run_twice_the_longer_is_taken() {
     .rough();
     let all = run.schedule();
     let schedule = [all[0], all[3], all[4], all[5]];
-    let reduced = reduce(&run.record(), None, &schedule).expect("all four are there");
-    let means = plateau_means(&reduced, &NoiseModel::pool([&reduced]));
+    let reduced = run.record().reduce(None, &schedule).expect("all four are there");
+    let means = reduced.means(&NoiseModel::pool([&reduced]));
     let [start, end] = run.windows()[3];
     assert!(means[1].window[0] >= start && means[1].window[1] <= end, "{:?}", means[1].window);
 }
@@ -466,7 +461,7 @@ fn a_missing_plateau_is_named_with_what_was_seen() {
     let mut schedule = run.schedule();
     let missing = Stream { omegas: vec![36.0], lengths: vec![10.0], ..run.clone() }.schedule()[0];
     schedule.insert(3, missing);
-    let error = reduce(&run.record(), None, &schedule).expect_err("it is not there");
+    let error = run.record().reduce(None, &schedule).expect_err("it is not there");
     let ReductionError::PlateauNotFound { index, count, omega, ref seen, .. } = error else { panic!("{error}") };
     assert_eq!((index, count, omega), (3, 7, 36.0));
     let taken: Vec<Option<usize>> = seen.iter().map(|stretch| stretch.plateau).collect();
@@ -483,7 +478,7 @@ fn a_plateau_that_is_missing_among_noisy_ones_is_refused() {
             let mut short = shaken.clone();
             short.omegas.remove(missing);
             short.lengths.pop();
-            let error = reduce(&short.record(), None, &shaken.schedule()).expect_err("one is not there");
+            let error = short.record().reduce(None, &shaken.schedule()).expect_err("one is not there");
             assert!(matches!(error, ReductionError::PlateauNotFound { .. }), "without {missing}: {error}");
         }
     }
@@ -500,8 +495,8 @@ fn the_speed_of_an_interruption_is_not_that_of_the_plateau() {
             *omega *= 0.5;
         }
     }
-    let reduced = reduce(&run.record(), Some(&telemetry), &run.schedule()).expect("all plateaus are there");
-    let speeds = measured_speeds(&run.omegas, reduced.speed_readings());
+    let reduced = run.record().reduce(Some(&telemetry), &run.schedule()).expect("all plateaus are there");
+    let speeds = MeasuredSpeed::of_all(&run.omegas, reduced.speed_readings());
     let shown = speeds[3].expect("it spins").speed / run.omegas[3];
     assert!((shown - 1.0).abs() < 1e-6, "{shown}");
 }
@@ -516,8 +511,8 @@ fn staircase() -> Stream {
 #[test]
 fn loads_closer_than_the_unit_is_to_nominal_are_found() {
     let run = staircase();
-    let reduced = reduce(&run.record(), None, &run.schedule()).expect("all are there");
-    let means = plateau_means(&reduced, &NoiseModel::pool([&reduced]));
+    let reduced = run.record().reduce(None, &run.schedule()).expect("all are there");
+    let means = reduced.means(&NoiseModel::pool([&reduced]));
     for (mean, [start, end]) in means.iter().zip(run.windows()) {
         assert!(mean.window[0] >= start && mean.window[1] <= end, "{:?} in {start} to {end}", mean.window);
     }
@@ -530,7 +525,7 @@ fn a_load_that_is_missing_among_close_ones_is_refused() {
         let mut short = run.clone();
         short.omegas.remove(missing);
         short.lengths.pop();
-        let error = reduce(&short.record(), None, &run.schedule()).expect_err("one is not there");
+        let error = short.record().reduce(None, &run.schedule()).expect_err("one is not there");
         assert!(matches!(error, ReductionError::PlateauNotFound { .. }), "without {missing}: {error}");
     }
 }
@@ -542,7 +537,7 @@ fn a_record_that_ends_early_lacks_its_last_plateau() {
     let end = run.windows()[4][1];
     let kept = whole.t.partition_point(|t| *t < end);
     let record = Record { t: whole.t[..kept].to_vec(), f_z: whole.f_z.map(|f| f[..kept].to_vec()) };
-    let error = reduce(&record, None, &run.schedule()).expect_err("the last is not there");
+    let error = record.reduce(None, &run.schedule()).expect_err("the last is not there");
     assert!(matches!(error, ReductionError::PlateauNotFound { index: 5, .. }), "{error}");
 }
 
@@ -551,7 +546,7 @@ fn plateaus_out_of_order_are_recognised() {
     let run = Stream::default();
     let mut schedule = run.schedule();
     schedule.swap(1, 3);
-    let error = reduce(&run.record(), None, &schedule).expect_err("the order is another");
+    let error = run.record().reduce(None, &schedule).expect_err("the order is another");
     let ReductionError::PlateauNotFound { ref seen, .. } = error else { panic!("{error}") };
     assert!(seen.iter().any(|stretch| stretch.plateau.is_none() && !stretch.resembles.is_empty()), "{error}");
     assert!(error.to_string().contains("repeated or out of order"), "{error}");
@@ -562,7 +557,7 @@ fn a_constant_record_has_no_plateaus() {
     let t: Vec<f64> = (0..5000).map(|i| f64::from(i) / 100.0).collect();
     for values in [[0.0, 0.0, 0.0], [0.1, -0.2, 9.81]] {
         let record = Record { f_z: values.map(|value| vec![value; t.len()]), t: t.clone() };
-        let error = reduce(&record, None, &Stream::default().schedule()).expect_err("nothing moves");
+        let error = record.reduce(None, &Stream::default().schedule()).expect_err("nothing moves");
         assert!(matches!(error, ReductionError::PlateauNotFound { .. }), "{error}");
     }
 }
@@ -576,8 +571,8 @@ fn a_record_of_one_plateau_is_found() {
         let [start, end] = run.windows()[0];
         let kept = whole.t.partition_point(|t| *t < start + 5.0)..whole.t.partition_point(|t| *t < end);
         let record = Record { t: whole.t[kept.clone()].to_vec(), f_z: whole.f_z.map(|f| f[kept.clone()].to_vec()) };
-        let reduced = reduce(&record, None, &run.schedule()).unwrap();
-        let mean = plateau_means(&reduced, &NoiseModel::pool([&reduced]))[0].clone();
+        let reduced = record.reduce(None, &run.schedule()).unwrap();
+        let mean = reduced.means(&NoiseModel::pool([&reduced]))[0].clone();
         assert!(
             chi_squared(&run, 0, &mean) < 20.0 && mean.window[1] - mean.window[0] > 50.0,
             "{omega}: {:?}",
@@ -589,7 +584,7 @@ fn a_record_of_one_plateau_is_found() {
 #[test]
 fn noise_alone_has_no_plateaus() {
     let run = Stream { omegas: vec![0.0], lengths: vec![60.0], ..Stream::default() };
-    let error = reduce(&run.record(), None, &Stream::default().schedule()).expect_err("nothing spins");
+    let error = run.record().reduce(None, &Stream::default().schedule()).expect_err("nothing spins");
     assert!(matches!(error, ReductionError::PlateauNotFound { .. }), "{error}");
 }
 
@@ -601,8 +596,8 @@ fn a_reading_stuck_for_a_while_is_left_out() {
     let from = record.t.partition_point(|t| *t < start + 5.0);
     let held = record.f_z[1][from];
     record.f_z[1][from..from + 100].fill(held);
-    let reduced = reduce(&record, None, &run.schedule()).expect("the rest of it is there");
-    let means = plateau_means(&reduced, &NoiseModel::pool([&reduced]));
+    let reduced = record.reduce(None, &run.schedule()).expect("the rest of it is there");
+    let means = reduced.means(&NoiseModel::pool([&reduced]));
     assert!(means[2].rejected >= 100);
     assert!(chi_squared(&run, 2, &means[2]) < 20.0);
 }
@@ -617,7 +612,7 @@ fn a_plateau_read_by_a_stuck_sensor_is_refused() {
             record.f_z[1][i] = -0.7;
         }
     }
-    let error = reduce(&record, None, &run.schedule()).expect_err("one axis says nothing");
+    let error = record.reduce(None, &run.schedule()).expect_err("one axis says nothing");
     assert!(matches!(error, ReductionError::Stuck { index: 2, axis: 1, value: -0.7, .. }), "{error}");
 }
 
@@ -645,8 +640,8 @@ fn a_constant_reading_needs_a_stated_resolution() {
     record.f_z[2].fill(9.84);
     let reduced = |resolution: f64| -> Result<(), ReductionError> {
         let survey = Survey::of(record.as_slice())?.with_resolution(resolution);
-        let located = locate(&survey, None, &run.schedule())?;
-        average(&located, 0, record.as_slice(), 0).map(|_| ())
+        let located = survey.locate(None, &run.schedule())?;
+        located.average(0, record.as_slice(), 0).map(|_| ())
     };
     assert!(matches!(reduced(0.0), Err(ReductionError::Stuck { index: 0, axis: 2, .. })), "{:?}", reduced(0.0));
     assert_eq!(reduced(1e-2), Ok(()));
@@ -663,7 +658,7 @@ fn sampling_in_step_with_the_rotation_is_refused() {
         rate: 5.0,
         ..Stream::default()
     };
-    let error = reduce(&run.record(), None, &run.schedule()).expect_err("no telling them apart");
+    let error = run.record().reduce(None, &run.schedule()).expect_err("no telling them apart");
     assert!(matches!(error, ReductionError::RevolutionAliased { index: 1, .. }), "{error}");
 }
 
@@ -671,7 +666,7 @@ fn sampling_in_step_with_the_rotation_is_refused() {
 fn what_is_no_record_is_refused() {
     let run = Stream::default();
     let (record, schedule) = (run.record(), run.schedule());
-    let refused = |record: &Record| reduce(record, None, &schedule).expect_err("no record");
+    let refused = |record: &Record| record.reduce(None, &schedule).expect_err("no record");
     let empty = Record::default();
     assert!(matches!(refused(&empty), ReductionError::TooShort { found: 0, .. }));
     let mut ragged = record.clone();

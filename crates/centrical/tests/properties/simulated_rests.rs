@@ -1,7 +1,7 @@
 //! Simulated rests in attitudes of their own: the physics against the model, and what the reduction finds of them.
 
 use centrical::position::ThirdPosition::AxisOneUp;
-use centrical::reduction::{Record, reduce_rests};
+use centrical::reduction::{Record, Rests};
 use centrical::simulate::{
     Bumps, Coloured, Equipment, Hand, Sensor, SimulatedTumble, Simulation, Tremor, draw_attitudes, draw_truth,
 };
@@ -104,7 +104,7 @@ fn the_means_of_simulated_rests_are_as_uncertain_as_stated() {
         let simulation = Simulation::new(&model, &truth, &equipment, seed).unwrap();
         let tumble = tumble(&simulation, &model);
         let (made, samples) = (tumble.rests(), record(&tumble));
-        let found = reduce_rests(&[samples.as_slice().into()], &unwatched).unwrap().means.concat();
+        let found = Rests::of(&[samples.as_slice().into()], &unwatched).unwrap().means.concat();
         // A bump may part one rest in two.
         assert!((22..=26).contains(&found.len()), "{seed}: {}", found.len());
         for rest in &found {

@@ -2,10 +2,7 @@
 
 use centrical::plan::{Noise, ReadingRange, predict};
 use centrical::position::ThirdPosition;
-use centrical::reduction::{
-    MeasuredSpeed, PulseTrain, Record, ReducedMounting, ScheduledPlateau, SpeedTrace, measured_speeds, reduce,
-    reduce_counted,
-};
+use centrical::reduction::{MeasuredSpeed, PulseTrain, Record, ReducedMounting, ScheduledPlateau, SpeedTrace};
 use centrical::simulate::{Counter, Equipment, Machine, Recorder, Sensor, Simulation, Tachometer, draw_truth};
 use centrical::uncertainty::{Extent, Level, ShownSpeed, StatedSpeeds, speed_contradictions};
 use centrical::{Calibration, Data, Experiment, MeasurementModel, Observation, PairRelation, SetPoint, Weight, linear};
@@ -46,7 +43,7 @@ fn measured(
         of_truth.extend(mounting.plateaus().iter().map(|p| p.omega.abs()));
         readings.extend_from_slice(reduced.speed_readings());
     }
-    let speeds = measured_speeds(&set, &readings);
+    let speeds = MeasuredSpeed::of_all(&set, &readings);
     let all = set.into_iter().zip(of_truth).zip(speeds).map(|((set, truth), speed)| (set, truth, speed));
     all.filter(|(set, ..)| *set != 0.0).collect()
 }
@@ -63,10 +60,10 @@ fn reduced(model: &MeasurementModel, simulation: &Simulation, m: usize, counted:
     let schedule: Vec<ScheduledPlateau> =
         of_mounting.map(|s| ScheduledPlateau { omega: s.omega, nominal_z: linear::nominal(experiment, s) }).collect();
     if let Some(per_revolution) = counted {
-        return reduce_counted(&record, &PulseTrain { t: mounting.pulses(), per_revolution }, &schedule).unwrap();
+        return record.reduce_counted(&PulseTrain { t: mounting.pulses(), per_revolution }, &schedule).unwrap();
     }
     let telemetry = mounting.telemetry();
-    reduce(&record, Some(&SpeedTrace { t: telemetry.t, omega: telemetry.omega }), &schedule).unwrap()
+    record.reduce(Some(&SpeedTrace { t: telemetry.t, omega: telemetry.omega }), &schedule).unwrap()
 }
 
 /// Mean square of errors over their stated uncertainty, `beyond` what the scatter shows, and the median uncertainty.

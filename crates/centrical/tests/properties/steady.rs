@@ -1,6 +1,6 @@
 //! Steady stretches of a signal, without its schedule.
 
-use centrical::reduction::{staircase, steady_stretches};
+use centrical::reduction::{Staircase, SteadyStretch};
 use centrical::unwatched;
 
 use crate::common::Random;
@@ -27,8 +27,8 @@ fn stretches_of_a_noisy_staircase() {
                 now += 1.0 / rate;
             }
         }
-        let found = steady_stretches(&t, &y);
-        assert_eq!(staircase(&t, &y, &unwatched).unwrap().map(|s| s.stretches), Some(set.len()));
+        let found = SteadyStretch::all(&t, &y);
+        assert_eq!(Staircase::of(&t, &y, &unwatched).unwrap().map(|s| s.stretches), Some(set.len()));
         assert_eq!(found.len(), set.len(), "seed {seed}: {found:?}");
         for (stretch, set) in found.iter().zip(set) {
             assert!(stretch.window[1] - stretch.window[0] > 8.0, "{stretch:?}");
@@ -42,9 +42,9 @@ fn stretches_of_a_noisy_staircase() {
 #[test]
 fn no_stretches() {
     let t: Vec<f64> = (0..2000).map(|n| f64::from(n) * 0.05).collect();
-    assert!(steady_stretches(&t, &t).is_empty());
-    assert!(steady_stretches(&[], &[]).is_empty());
-    assert!(steady_stretches(&t[..3], &[1.0; 3]).is_empty());
+    assert!(SteadyStretch::all(&t, &t).is_empty());
+    assert!(SteadyStretch::all(&[], &[]).is_empty());
+    assert!(SteadyStretch::all(&t[..3], &[1.0; 3]).is_empty());
 }
 
 /// White noise, a random walk, a drift and a sine about zero are not staircases.
@@ -63,7 +63,7 @@ fn noise_is_no_staircase() {
         let sine: Vec<f64> = t.iter().zip(&white).map(|(t, w)| 30.0 * (t / 7.0).sin() + w).collect();
         let drift: Vec<f64> = t.iter().zip(&white).map(|(t, w)| 9.8 + 1e-3 * (w + t / 10.0)).collect();
         for (name, y) in [("white", white), ("walk", walked), ("sine", sine), ("drift", drift)] {
-            assert_eq!(staircase(&t, &y, &unwatched).unwrap(), None, "{name}, seed {seed}");
+            assert_eq!(Staircase::of(&t, &y, &unwatched).unwrap(), None, "{name}, seed {seed}");
         }
     }
 }

@@ -4,7 +4,7 @@ use std::cell::Cell;
 
 use centrical::PairRelation;
 use centrical::position::ThirdPosition;
-use centrical::reduction::{NoiseModel, PlateauMean, Record, ReducedMounting, ScheduledPlateau, plateau_means, reduce};
+use centrical::reduction::{NoiseModel, PlateauMean, Record, ReducedMounting, ScheduledPlateau};
 use centrical::simulate::{Equipment, Machine, Sensor, Simulation, draw_truth};
 use centrical::uncertainty::{OncePerRevolution, TiltComparison};
 use centrical::{Calibration, Data, MeasurementModel, Observation, linear};
@@ -31,11 +31,11 @@ fn means(model: &MeasurementModel, truth: &[f64], seed: u64) -> Vec<PlateauMean>
         let schedule: Vec<ScheduledPlateau> = (experiment.set_points.iter().filter(|s| s.mounting == m))
             .map(|s| ScheduledPlateau { omega: s.omega, nominal_z: linear::nominal(experiment, s) })
             .collect();
-        reduce(&record, None, &schedule).unwrap_or_else(|error| panic!("{seed}, {m}: {error}"))
+        record.reduce(None, &schedule).unwrap_or_else(|error| panic!("{seed}, {m}: {error}"))
     };
     let reduced: Vec<ReducedMounting> = (0..experiment.mountings.len()).map(of_mounting).collect();
     let noise = NoiseModel::pool(&reduced);
-    reduced.iter().flat_map(|mounting| plateau_means(mounting, &noise)).collect()
+    reduced.iter().flat_map(|mounting| mounting.means(&noise)).collect()
 }
 
 /// The comparison for a session whose true tilt has that size [rad]; `change` is done to every term.

@@ -1,6 +1,6 @@
 //! Reduction of whole sessions against their truth.
 
-use centrical::reduction::{NoiseModel, ReducedMounting, plateau_means, reduce};
+use centrical::reduction::{NoiseModel, ReducedMounting};
 use nalgebra::{Matrix3, Vector3};
 
 use crate::session::Session;
@@ -24,7 +24,7 @@ fn windows_and_means(name: &str) {
     let session = Session::open(name);
     let reduced: Vec<ReducedMounting> = (0..session.mountings())
         .map(|m| {
-            let found = reduce(&session.record(m), Some(&session.telemetry(m)), &session.schedule(m));
+            let found = session.record(m).reduce(Some(&session.telemetry(m)), &session.schedule(m));
             found.unwrap_or_else(|error| panic!("{name}, mounting {}: {error}", m + 1))
         })
         .collect();
@@ -32,7 +32,7 @@ fn windows_and_means(name: &str) {
     let (mut chi_squared, mut freedom) = (0.0, 0.0);
     for (m, reduced) in reduced.iter().enumerate() {
         assert!(reduced.clock_offset().is_some_and(|offset| offset.standard_uncertainty < 0.01));
-        for (k, mean) in plateau_means(reduced, &noise).iter().enumerate() {
+        for (k, mean) in reduced.means(&noise).iter().enumerate() {
             let [start, end] = session.window(m, k);
             let [from, to] = mean.window;
             assert!(from >= start && to <= end, "{name} {m} {k}: {from} to {to} in {start} to {end}");

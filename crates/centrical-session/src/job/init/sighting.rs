@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use centrical::reduction::{SteadyStretch, steady_stretches};
+use centrical::reduction::SteadyStretch;
 use centrical::{OnProgress, advance};
 use centrical_table::ColumnName;
 
@@ -45,7 +45,7 @@ pub(super) fn sight(group: Group, progress: OnProgress) -> Result<SeenMounting, 
     let mut plateaus = Vec::new();
     if let Some(telemetry) = &group.telemetry {
         let trace = read_telemetry(&telemetry.path, &columns_of(telemetry))?;
-        let stretches = steady_stretches(&trace.t, &trace.omega);
+        let stretches = SteadyStretch::all(&trace.t, &trace.omega);
         let speed = |stretch: &SteadyStretch| Some([stretch.value, stretch.standard_uncertainty]);
         plateaus =
             stretches.iter().map(|l| SeenPlateau { window: l.window, speed: speed(l), readings: None }).collect();
@@ -55,7 +55,7 @@ pub(super) fn sight(group: Group, progress: OnProgress) -> Result<SeenMounting, 
         let magnitude: Vec<f64> = seen.thinned.iter().map(|(_, f)| *f).collect();
         let times: Vec<f64> = seen.thinned.iter().map(|(t, _)| *t).collect();
         let bare = |l: &SteadyStretch| SeenPlateau { window: l.window, speed: None, readings: None };
-        plateaus.extend(steady_stretches(&times, &magnitude).iter().map(bare));
+        plateaus.extend(SteadyStretch::all(&times, &magnitude).iter().map(bare));
         seen = Seen::default();
         seen.read(&group, &plateaus, false, progress)?;
     }

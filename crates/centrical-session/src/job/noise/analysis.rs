@@ -1,7 +1,7 @@
 //! Noise of a record: stability deviations, spectrum and noise terms of every column of readings.
 
 use centrical::OnProgress;
-use centrical::reduction::staircase;
+use centrical::reduction::Staircase;
 use centrical::stability::{Analysis, Estimator};
 use rayon::prelude::*;
 
@@ -19,7 +19,7 @@ pub fn analyse_noise(series: &Series, estimators: &[Estimator], progress: OnProg
     let analysed = columns.map(|(name, unit, values)| {
         let failed = |source| Error::noise(&series.file, name, source);
         let noise = Analysis::of(&series.t, values, estimators, &|()| progress(0)).map_err(failed)?;
-        let staircase = staircase(&series.t, values, &|()| progress(0))?;
+        let staircase = Staircase::of(&series.t, values, &|()| progress(0))?;
         Ok::<_, Error>(ReadingNoise { name: name.clone(), unit: unit.clone(), staircase, noise })
     });
     Ok(NoiseAnalysis {

@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use centrical::reduction::{PulseTrain, Record, ReducedMounting, SpeedTrace, Survey, average, locate};
+use centrical::reduction::{PulseTrain, Record, ReducedMounting, SpeedTrace, Survey};
 use centrical::{OnProgress, advance};
 use rayon::prelude::*;
 
@@ -68,7 +68,7 @@ fn reduce_mounting(
     let survey = Survey::of(record.as_slice()).map_err(refused)?.with_resolution(session.type_b.resolution);
     advance(progress, 0)?;
     let schedule = schedule(&session.experiment, number);
-    let mut located = locate(&survey, telemetry.as_ref(), &schedule).map_err(|source| {
+    let mut located = survey.locate(telemetry.as_ref(), &schedule).map_err(|source| {
         let instead = fits_instead(session, number, &survey, &source);
         refused(source).with_instead(instead)
     })?;
@@ -77,7 +77,7 @@ fn reduce_mounting(
     }
     let means = (0..schedule.len()).map(|plateau| {
         advance(progress, 0)?;
-        average(&located, plateau, record.as_slice(), 0).map_err(refused)
+        located.average(plateau, record.as_slice(), 0).map_err(refused)
     });
     let means = means.collect::<Result<_, _>>()?;
     let overview = RecordOverview::of(number + 1, &survey.extremes().collect::<Vec<_>>());

@@ -1,7 +1,7 @@
 //! What a record fits that does not fit its mounting: files or entries that are exchanged, a unit that was turned.
 
 use centrical::Experiment;
-use centrical::reduction::{ReductionError, ScheduledPlateau, Survey, locate};
+use centrical::reduction::{ReductionError, ScheduledPlateau, Survey};
 use nalgebra::{Matrix3, Vector3};
 
 use super::schedule::schedule;
@@ -20,7 +20,7 @@ pub(crate) fn fits_instead(
         return None;
     }
     let experiment = &session.experiment;
-    let likelihood = |schedule: Vec<ScheduledPlateau>| locate(survey, None, &schedule).ok()?.log_likelihood();
+    let likelihood = |schedule: Vec<ScheduledPlateau>| survey.locate(None, &schedule).ok()?.log_likelihood();
     let all = mountings(experiment, number).chain(places(experiment, number)).chain(attitudes(experiment, number));
     let fit = all.filter_map(|(instead, schedule)| Some((instead, likelihood(schedule)?)));
     let likelier = |best: (Instead, f64), next: (Instead, f64)| if next.1 > best.1 { next } else { best };

@@ -1,7 +1,7 @@
 //! A mounting's record in two passes: where its plateaus are, then what they read.
 
 use centrical::OnProgress;
-use centrical::reduction::{PulseTrain, ReducedMounting, locate};
+use centrical::reduction::{PulseTrain, ReducedMounting};
 
 use super::instead::fits_instead;
 use super::schedule::schedule;
@@ -30,7 +30,7 @@ pub(super) fn reduce_mounting(
     let (survey, interpolated) = record.survey(cache)?;
     let survey = survey.with_resolution(session.type_b.resolution);
     let telemetry = session.telemetry(number)?;
-    let located = locate(&survey, telemetry.as_ref(), &schedule(&session.experiment, number));
+    let located = survey.locate(telemetry.as_ref(), &schedule(&session.experiment, number));
     let mut located = located.map_err(|source| {
         let instead = fits_instead(session, number, &survey, &source);
         refused(source).with_instead(instead)

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 use std::collections::{BTreeMap, HashMap};
 use std::path::Path;
 
-use centrical::reduction::{PlateauMean, RepeatedRests, chance_of_likeness, repeated_rests};
+use centrical::reduction::{PlateauMean, RepeatedRests};
 use centrical::uncertainty::Level;
 use centrical::{Mounting, SetPoint};
 
@@ -51,7 +51,7 @@ pub(crate) fn refuse_repeated_rests(session: &Session, reduced: &Reduced, file: 
         white.inf(&plateau.covariance.diagonal()).map(f64::sqrt)
     };
     let means: Vec<_> = rests.iter().map(|plateau| (plateau.mean, least_noise(plateau))).collect();
-    let Some(RepeatedRests { first: (earlier, later), count }) = repeated_rests(&means) else { return Ok(()) };
+    let Some(RepeatedRests { first: (earlier, later), count }) = RepeatedRests::among(&means) else { return Ok(()) };
     let named = |rest: usize| {
         let at = rests[rest].window.map_or_else(String::new, |[from, _]| format!(" at {from:.1} s"));
         format!("rest {}{at}", rest + 1)
@@ -96,7 +96,8 @@ pub(crate) fn refuse_copies<'m>(
         numbers.sort_by(|a, b| size(a).total_cmp(&size(b)));
         for pair in numbers.windows(2) {
             let (first, second) = (pair[0].min(pair[1]), pair[0].max(pair[1]));
-            let chance = chance_of_likeness(&means[first], &means[second]).map(|chance| pairs as f64 * chance);
+            let chance =
+                PlateauMean::chance_of_likeness(&means[first], &means[second]).map(|chance| pairs as f64 * chance);
             if let Some(chance) = chance.filter(|chance| Level::Objection.is_passed_by(*chance)) {
                 let file = |number: usize| session.mountings[number].record.as_deref().unwrap_or(&session.file);
                 let chance = if chance > 0.0 { format!("of {chance:.0e}") } else { "below 1e-300".to_owned() };

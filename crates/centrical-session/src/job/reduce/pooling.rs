@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use centrical::reduction::{MeasuredSpeed, NoiseModel, PlateauMean, ReducedMounting, measured_speeds, plateau_means};
+use centrical::reduction::{MeasuredSpeed, NoiseModel, PlateauMean, ReducedMounting};
 
 use super::mounting::OfRecord;
 use super::own_readings::refuse_copies;
@@ -21,7 +21,7 @@ pub(super) fn pooled(session: &Session, mountings: Vec<OfRecord>) -> Result<Redu
     let (reduced, records): (Vec<ReducedMounting>, Vec<RecordOverview>) =
         mountings.into_iter().map(|mounting| (mounting.reduced, mounting.overview)).unzip();
     let noise = NoiseModel::pool(&reduced);
-    let means: Vec<Vec<PlateauMean>> = reduced.iter().map(|mounting| plateau_means(mounting, &noise)).collect();
+    let means: Vec<Vec<PlateauMean>> = reduced.iter().map(|mounting| mounting.means(&noise)).collect();
     refuse_copies(session, means.len(), &|| Cow::Borrowed(&means))?;
     let findings = |(m, interpolated): (&ReducedMounting, &Option<[u64; 3]>)| MountingFindings {
         settling_time: m.settling_time(),
@@ -34,7 +34,7 @@ pub(super) fn pooled(session: &Session, mountings: Vec<OfRecord>) -> Result<Redu
     let on_arm = experiment.set_points.iter().filter(|set_point| experiment.is_on_arm(set_point.mounting));
     let set: Vec<f64> = on_arm.map(|set_point| set_point.omega).collect();
     let readings: Vec<_> = reduced.iter().flat_map(|mounting| mounting.speed_readings().iter().copied()).collect();
-    let speeds = measured_speeds(&set, &readings);
+    let speeds = MeasuredSpeed::of_all(&set, &readings);
     refuse_other_units(session, &speeds)?;
     Ok(Reduced {
         speeds,

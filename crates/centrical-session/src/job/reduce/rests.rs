@@ -4,7 +4,7 @@ use std::borrow::Cow;
 use std::path::Path;
 
 use centrical::OnProgress;
-use centrical::reduction::{Record, ReductionError, RestRecord, Rests, reduce_rests};
+use centrical::reduction::{Record, ReductionError, RestRecord, Rests};
 use centrical_table::Extent;
 use nalgebra::Vector3;
 
@@ -23,7 +23,7 @@ pub(crate) fn find_rests(records: &[RestRecord], file: &Path, progress: OnProgre
         ReductionError::Stopped(stopped) => stopped.into(),
         source => Error::reduction(file, 0, source),
     };
-    let rests = reduce_rests(records, &|()| progress(0)).map_err(refused)?;
+    let rests = Rests::of(records, &|()| progress(0)).map_err(refused)?;
     let count: usize = rests.means.iter().map(Vec::len).sum();
     if count < 2 {
         let stretches = if count == 1 { "stretch" } else { "stretches" };

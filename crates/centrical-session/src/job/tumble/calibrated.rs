@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use centrical::reduction::{CoarseScale, Record, RestRecord, Rests, coarse_scale};
+use centrical::reduction::{CoarseScale, Record, RestRecord, Rests};
 use centrical::{OnProgress, advance};
 use centrical_table::{TableLines, refuse_inputs, write_whole};
 use nalgebra::Vector3;
@@ -166,7 +166,7 @@ fn means(rests: &Rests) -> Vec<Vector3<f64>> {
 /// The coarse scale and bias of readings in counts or volts.
 fn coarse(request: &TumbleRequest, rests: &Rests) -> Result<CoarseScale, Error> {
     let means = means(rests);
-    coarse_scale(&means, request.gravity).ok_or_else(|| {
+    CoarseScale::of(&means, request.gravity).ok_or_else(|| {
         let found = format!("{} rests that do not show scale and bias of {}", means.len(), request.unit);
         let expected = "rests with each axis about up and about down, six at least";
         Error::content(&first(request), Place::Whole, found, expected)

@@ -9,8 +9,7 @@ use std::time::{Duration, SystemTime};
 
 use centrical::Observation;
 use centrical::reduction::{
-    MeasuredSpeed, NoiseModel, Record, ReducedMounting, ReductionError, ScheduledPlateau, Survey, measured_speeds,
-    plateau_means, reduce, reduce_counted,
+    MeasuredSpeed, NoiseModel, Record, ReducedMounting, ReductionError, ScheduledPlateau, Survey,
 };
 use centrical_table::Extent;
 
@@ -253,7 +252,7 @@ impl<'s> Watch<'s> {
     fn refuse_copies(&self) -> Result<(), Error> {
         refuse_copies(self.session, self.finished.len(), &|| {
             let noise = NoiseModel::pool(&self.finished);
-            self.finished.iter().map(|mounting| plateau_means(mounting, &noise)).collect()
+            self.finished.iter().map(|mounting| mounting.means(&noise)).collect()
         })
     }
 
@@ -319,13 +318,13 @@ impl<'s> Watch<'s> {
         match measured.map_or(SpeedSource::Telemetry, |measured| measured.source) {
             SpeedSource::Telemetry => {
                 let telemetry = self.session.telemetry_to(mounting, Extent::Growing).ok().flatten();
-                reduce(record, telemetry.as_ref(), schedule)
+                record.reduce(telemetry.as_ref(), schedule)
             }
             SpeedSource::Pulses => match self.session.pulses_to(mounting, Extent::Growing).ok().flatten() {
-                Some(pulses) => reduce_counted(record, &pulses, schedule),
-                None => reduce(record, None, schedule),
+                Some(pulses) => record.reduce_counted(&pulses, schedule),
+                None => record.reduce(None, schedule),
             },
-            SpeedSource::Plateaus => reduce(record, None, schedule),
+            SpeedSource::Plateaus => record.reduce(None, schedule),
         }
     }
 
@@ -335,7 +334,7 @@ impl<'s> Watch<'s> {
         let (there, set): (Vec<usize>, Vec<f64>) =
             set_points.filter(|(_, s)| s.mounting == mounting).map(|(n, s)| (n, s.omega)).unzip();
         let readings = reduced.speed_readings();
-        let speeds = measured_speeds(&set[..readings.len().min(set.len())], readings);
+        let speeds = MeasuredSpeed::of_all(&set[..readings.len().min(set.len())], readings);
         self.speeds.extend(there.into_iter().zip(speeds).filter_map(|(n, speed)| Some((n, speed?))));
     }
 
@@ -352,7 +351,7 @@ impl<'s> Watch<'s> {
     /// The plateaus of a mounting with the noise of all that are known.
     fn observations(&self, mounting: usize, reduced: &ReducedMounting) -> Vec<Observation> {
         let noise = NoiseModel::pool(self.finished.iter().chain([reduced]));
-        let means = plateau_means(reduced, &noise);
+        let means = reduced.means(&noise);
         let set_points = self.session.experiment.set_points.iter().enumerate();
         let there = set_points.filter(|(_, set_point)| set_point.mounting == mounting).map(|(index, _)| index);
         let observation = |(set_point, plateau): (usize, centrical::reduction::PlateauMean)| Observation {
