@@ -4,7 +4,7 @@
 mod common;
 
 use centrical::PairRelation;
-use centrical::position::ThirdPosition;
+use centrical::ThirdPosition;
 
 fn main() {
     divan::main();

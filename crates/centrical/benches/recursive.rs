@@ -4,8 +4,8 @@
 #[path = "../tests/common/mod.rs"]
 mod common;
 
+use centrical::ThirdPosition;
 use centrical::fit::filter::{Factor, Filter, Lifetimes, Readings};
-use centrical::position::ThirdPosition;
 use centrical::{Calibration, Data, MeasurementModel, PairRelation};
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 

@@ -1,7 +1,7 @@
 //! What a user waits for who asks for a session: samples a second on one core.
 
 use centrical::plan::Normalised;
-use centrical::simulate::{Equipment, Simulation, draw_truth};
+use centrical::simulate::{Equipment, Simulation};
 use centrical::{ErrorModel, Extension, Law, MeasurementModel};
 use divan::Bencher;
 use divan::counter::ItemsCount;
@@ -15,7 +15,7 @@ fn simulate(bencher: Bencher, extensions: &[Extension], equipment: &Equipment) {
     let mut experiment = Normalised::default().experiment();
     experiment.site.latitude = Some(0.97);
     let model = MeasurementModel::new(experiment, ErrorModel::kozlov_2017(), extensions);
-    let truth = draw_truth(&model, 1.0, 1);
+    let truth = Simulation::draw_truth(&model, 1.0, 1);
     let mut equipment = *equipment;
     equipment.recorder.rate = 1000.0;
     equipment.machine.plateau = 100.0;

@@ -3,8 +3,8 @@
 use std::f64::consts::PI;
 use std::fmt::Write;
 
+use centrical::ThirdPosition;
 use centrical::plan::Normalised;
-use centrical::position::ThirdPosition;
 use centrical::{ErrorModel, MeasurementModel, PairRelation, Study, Weight};
 use nalgebra::Matrix3;
 

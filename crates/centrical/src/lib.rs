@@ -65,15 +65,15 @@ pub use fit::data::Data;
 pub use fit::estimates::{Fit, Termination};
 pub use linalg::least_squares::{LeastSquares, Solution};
 pub use model::{
-    ArmMotion, Centrifuge, Course, Difference, EARTH_RATE, Effect, ErrorModel, Experiment, Extension, Extra, FitError,
-    Group, History, Influence, Kind, Law, Linearisation, MeasurementModel, Mounting, NULL_HOLD, Observation,
-    PairRelation, Parameter, Parameters, Position, Prior, PriorError, PriorUse, ReferencePoint, Rival, Rotation,
-    STANDARD_GRAVITY, SetPoint, Site, Source, SwitchOn, Term, TypeB, Unit, Weight, carousel, hat, is_rotation, linear,
-    position, rotation, rotation_rate,
+    ArmMotion, Centrifuge, Course, Difference, Effect, ErrorModel, Experiment, Extension, Extra, FitError, Group,
+    History, Influence, Kind, Law, Linearisation, MeasurementModel, Mounting, NULL_HOLD, Observation, PairRelation,
+    Parameter, Parameters, Position, Prior, PriorError, PriorUse, ReferencePoint, Rival, Rotation, STANDARD_GRAVITY,
+    SetPoint, Site, Source, SwitchOn, Term, ThirdPosition, TypeB, Unit, Weight, hat, is_rotation, rotation,
+    rotation_rate,
 };
 pub use nalgebra;
 pub use observability::combination::Combination;
 pub use observability::direction::NullDirection;
-pub use observability::rank::{Observability, RANK_TOLERANCE};
+pub use observability::rank::Observability;
 pub use observability::study::Study;
 pub use progress::{OnProgress, Stopped, advance, unwatched};

@@ -19,13 +19,13 @@ mod group;
 mod history;
 mod instant;
 mod kind;
-pub mod linear;
+mod linear;
 mod measurement;
 mod nominal;
 mod observation;
 mod parameter;
 mod parameters;
-pub mod position;
+pub(crate) mod position;
 pub(crate) mod prior;
 mod rival;
 mod share;
@@ -37,11 +37,11 @@ pub use effect::{Course, Effect, Law, Scope};
 pub use error::FitError;
 pub use error_model::{ErrorModel, Extra, Term};
 pub use experiment::{
-    Centrifuge, EARTH_RATE, Experiment, History, Mounting, PairRelation, ReferencePoint, Rotation, STANDARD_GRAVITY,
-    SetPoint, Site, Unit,
+    Centrifuge, Experiment, History, Mounting, PairRelation, ReferencePoint, Rotation, STANDARD_GRAVITY, SetPoint,
+    Site, Unit,
 };
 pub use extension::{Difference, Extension};
-pub use frame::{carousel, hat, is_rotation, rotation, rotation_rate};
+pub use frame::{hat, is_rotation, rotation, rotation_rate};
 pub use group::Group;
 pub use instant::ArmMotion;
 pub(crate) use instant::MountedUnit;
@@ -50,7 +50,7 @@ pub use measurement::{Linearisation, MeasurementModel};
 pub use observation::{Observation, Weight};
 pub use parameter::{NULL_HOLD, Parameter};
 pub use parameters::Parameters;
-pub use position::{Position, SwitchOn};
+pub use position::{Position, SwitchOn, ThirdPosition};
 pub use prior::{Prior, PriorError, PriorUse};
 pub use rival::Rival;
 pub use stated::{Influence, Source, TypeB};

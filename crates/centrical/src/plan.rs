@@ -12,7 +12,7 @@
 //!   costs of groups. `relaxation` bounds schedules: the continuous design, any candidate for any part of its visits, by
 //!   sequential quadratic programming with the bound of the equivalence theorem (Kiefer and Wolfowitz 1960). `exchange`
 //!   finds them, by rounding and exchange of whole visits;
-//! - [`Prediction`]: the uncertainties of a plan; [`Rationale`]: the reason for each visit; [`frontier`](frontier()): time
+//! - [`Prediction`]: the uncertainties of a plan; [`Rationale`]: the reason for each visit; [`Candidates::frontier`]: time
 //!   against uncertainty; [`NextPlateau`]: the best next plateau.
 //!
 //! **Unknowns that a schedule does not determine** (turns of a position that is not mounted, lost combinations) are held by a
@@ -38,11 +38,11 @@ mod search;
 pub use candidates::{Candidates, Costs, Noise, Scenario, Schedule, Visit};
 pub use criterion::{Criterion, Goal, ReadingRange, Robustness};
 pub use error::PlanError;
-pub use frontier::{FrontierPoint, frontier};
+pub use frontier::FrontierPoint;
 pub use goals::{Reached, Task};
 pub use next::{Benefit, NextPlateau};
 pub use normalised::Normalised;
-pub use prediction::{Prediction, predict, unit_of};
+pub use prediction::Prediction;
 pub use rationale::{Rationale, Reason};
 pub use relaxation::Relaxed;
-pub use search::{Effort, Plan, best_for_time, shortest_for_goals};
+pub use search::{Effort, Plan};

@@ -261,28 +261,30 @@ const ERRORS: usize = 0;
 const ATTITUDES: usize = 1;
 const CHANGE: usize = 2;
 
-/// Unknowns drawn from a normal law of `size` times the typical magnitude of each; attitudes of rests that are known from one of
-/// their stated uncertainty. Rests leave the draws of the unit and the arm as they are.
-pub fn draw_truth(model: &MeasurementModel, size: f64, seed: u64) -> Vec<f64> {
-    let (mut random, mut of_rests) = (Draw::Truth.stream(seed, 0), Draw::Rests.stream_of(seed, 0, ERRORS));
-    let mut drawn = |parameter: &Parameter| match parameter.kind {
-        Kind::Attitude { position, .. } => {
-            let known = model.experiment().positions[position].attitude_uncertainty;
-            known.unwrap_or(size * parameter.typical) * of_rests.normal()
-        }
-        Kind::CaseTurn(_) => size * parameter.typical * of_rests.normal(),
-        Kind::Tilt(_)
-        | Kind::Turn { .. }
-        | Kind::Shift { .. }
-        | Kind::ProofMass(_)
-        | Kind::Term(_)
-        | Kind::Effect(_) => size * parameter.typical * random.normal(),
-    };
-    model.parameters().iter().map(&mut drawn).collect()
-}
+impl Simulation<'_> {
+    /// Unknowns drawn from a normal law of `size` times the typical magnitude of each; attitudes of rests that are known from one of
+    /// their stated uncertainty. Rests leave the draws of the unit and the arm as they are.
+    pub fn draw_truth(model: &MeasurementModel, size: f64, seed: u64) -> Vec<f64> {
+        let (mut random, mut of_rests) = (Draw::Truth.stream(seed, 0), Draw::Rests.stream_of(seed, 0, ERRORS));
+        let mut drawn = |parameter: &Parameter| match parameter.kind {
+            Kind::Attitude { position, .. } => {
+                let known = model.experiment().positions[position].attitude_uncertainty;
+                known.unwrap_or(size * parameter.typical) * of_rests.normal()
+            }
+            Kind::CaseTurn(_) => size * parameter.typical * of_rests.normal(),
+            Kind::Tilt(_)
+            | Kind::Turn { .. }
+            | Kind::Shift { .. }
+            | Kind::ProofMass(_)
+            | Kind::Term(_)
+            | Kind::Effect(_) => size * parameter.typical * random.normal(),
+        };
+        model.parameters().iter().map(&mut drawn).collect()
+    }
 
-/// Directions of up in `count` attitudes, instrument axes: all directions are as likely. `number` counts the tumbles of a session.
-pub fn draw_attitudes(count: usize, seed: u64, number: usize) -> Vec<Vector3<f64>> {
-    let mut random = Draw::Rests.stream_of(seed, number, ATTITUDES);
-    (0..count).map(|_| Vector3::from_fn(|_, _| random.normal()).normalize()).collect()
+    /// Directions of up in `count` attitudes, instrument axes: all directions are as likely. `number` counts the tumbles of a session.
+    pub fn draw_attitudes(count: usize, seed: u64, number: usize) -> Vec<Vector3<f64>> {
+        let mut random = Draw::Rests.stream_of(seed, number, ATTITUDES);
+        (0..count).map(|_| Vector3::from_fn(|_, _| random.normal()).normalize()).collect()
+    }
 }

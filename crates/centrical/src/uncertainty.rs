@@ -1,16 +1,16 @@
 //! How far a calibration can be trusted.
 //!
 //! - [`Budget`]: what each source of uncertainty leaves in each parameter (GUM, JCGM 100:2008);
-//! - [`monte_carlo`]: the whole calibration repeated on drawn readings and drawn type B errors, to check the budget;
+//! - [`MonteCarlo`]: the whole calibration repeated on drawn readings and drawn type B errors, to check the budget;
 //! - [`Validity`], [`Cleaned`], [`Pattern`]: whether the residuals are those of a true model;
-//! - [`speed_contradictions`]: the speeds of the telemetry against those that were set;
+//! - [`StatedSpeeds::contradictions`]: the speeds of the telemetry against those that were set;
 //! - [`TiltComparison`]: the tilt of the axis by the once-per-revolution terms, which the fit does not use;
 //! - [`BetweenRests`]: scatter and drift of rests that their own noise does not show;
 //! - [`Creep`]: readings that still change after the unit was turned;
-//! - [`select`]: which of several models the data speak for;
+//! - [`Selection`]: which of several models the data speak for;
 //! - [`Compensated`]: the uncertainty of a compensated reading;
 //! - [`ModelInAxes`], [`ScaleForm`]: a calibrated error model in other axes;
-//! - [`compare`]: two calibrations of one unit.
+//! - [`Comparison`]: two calibrations of one unit.
 //!
 //! Type A is what the data show: the noise of the plateau means. Type B is what they cannot show and the laboratory
 //! states ([`TypeB`]): errors of quantities that the model takes as exact, gravity or a radius, are further unknowns of the
@@ -39,18 +39,18 @@ pub use crate::statistics::chi_squared_tail;
 pub use axes::{ModelInAxes, ScaleForm};
 pub use between_rests::BetweenRests;
 pub use budget::{Budget, Contribution, Improvement};
-pub use comparison::{Comparison, Difference, Estimates, compare};
+pub use comparison::{Comparison, Difference, Estimates};
 pub use compensated::{Compensated, CurvePoint};
-pub use coverage::{Degrees, coverage_factor, effective_degrees_of_freedom};
+pub use coverage::Degrees;
 pub use creep::Creep;
-pub use drift::{PlateauDrift, SessionDrift, Slope, slope_of_speed};
+pub use drift::{PlateauDrift, SessionDrift, Slope};
 pub use holm::family_wise;
-pub use monte_carlo::{Method, MonteCarlo, ParameterStatistics, Settings, WeightedSquare, monte_carlo};
+pub use monte_carlo::{Method, MonteCarlo, ParameterStatistics, Settings, WeightedSquare};
 pub use pattern::{Pattern, Trend};
-pub use repeats::{Repeat, repeats};
+pub use repeats::Repeat;
 pub use rivals::{RivalTest, Rivals, Suspects, Unseen};
-pub use selection::{Candidate, FittedCandidate, NestedTest, Selection, TermVerdict, select, select_beside};
-pub use speeds::{Extent, ShownSpeed, SpeedContradiction, StatedSpeeds, speed_contradictions};
+pub use selection::{Candidate, FittedCandidate, NestedTest, Selection, TermVerdict};
+pub use speeds::{Extent, ShownSpeed, SpeedContradiction, StatedSpeeds};
 pub use tilt::{OncePerRevolution, TiltComparison};
 pub use validity::{Cleaned, MountingCheck, PlateauCheck, Prediction, Validity};
-pub use verdict::{Findings, Level, Objection, chance_of_residuals, objections};
+pub use verdict::{Findings, Level, Objection, chance_of_residuals};

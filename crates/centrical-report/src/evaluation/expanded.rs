@@ -1,6 +1,6 @@
 //! Expanded uncertainties, as all documents state them: for one probability, with the coverage factor that belongs to it.
 
-use centrical::uncertainty::{Degrees, coverage_factor};
+use centrical::uncertainty::Degrees;
 use centrical_session::{CalibrationResult, ParameterEstimate};
 
 /// Coverage factor where the degrees of freedom are infinite.
@@ -39,7 +39,7 @@ pub(crate) fn expanded(result: &CalibrationResult, parameter: &ParameterEstimate
 pub(crate) fn expanded_of(standard_uncertainty: f64, degrees_of_freedom: Option<f64>) -> Expanded {
     let degrees_of_freedom = degrees_of_freedom.map(|nu| nu.floor().max(1.0));
     let factor =
-        degrees_of_freedom.map_or(COVERAGE_FACTOR, |nu| coverage_factor(COVERAGE_PROBABILITY, Degrees::Finite(nu)));
+        degrees_of_freedom.map_or(COVERAGE_FACTOR, |nu| Degrees::Finite(nu).coverage_factor(COVERAGE_PROBABILITY));
     Expanded { factor, degrees_of_freedom, uncertainty: factor * standard_uncertainty }
 }
 
@@ -52,10 +52,10 @@ mod tests {
     fn factors_of_the_published_table() {
         let table = [(1.0, 13.97), (2.0, 4.53), (5.0, 2.65), (8.0, 2.37), (10.0, 2.28), (20.0, 2.13), (50.0, 2.05)];
         for (nu, k) in table {
-            let found = coverage_factor(COVERAGE_PROBABILITY, Degrees::Finite(nu));
+            let found = Degrees::Finite(nu).coverage_factor(COVERAGE_PROBABILITY);
             assert!((found - k).abs() <= 0.005 + 1e-9, "{nu}: {found}");
         }
-        let normal = coverage_factor(COVERAGE_PROBABILITY, Degrees::Infinite);
+        let normal = Degrees::Infinite.coverage_factor(COVERAGE_PROBABILITY);
         assert!((normal - COVERAGE_FACTOR).abs() < 1e-9, "{normal}");
     }
 }

@@ -1,6 +1,6 @@
 //! How far a calibration can be trusted, as text for the terminal: budget, validity, prediction.
 
-use centrical::uncertainty::{Budget, CurvePoint, Degrees, Level, Pattern, Validity, coverage_factor};
+use centrical::uncertainty::{Budget, CurvePoint, Degrees, Level, Pattern, Validity};
 use centrical::{Experiment, Fit, MeasurementModel, Parameter, Parameters, STANDARD_GRAVITY};
 use centrical_session::{Assessment, MICRO_G, PatternSummary, customary};
 
@@ -74,7 +74,7 @@ fn budget_row(budget: &Budget, j: usize, parameter: &Parameter, coverage: f64) -
         return cells;
     };
     cells.extend(budget.contributions().iter().map(|c| two_digits(c.standard_uncertainty(j) * factor).into()));
-    let k = coverage_factor(coverage, degrees);
+    let k = degrees.coverage_factor(coverage);
     let dof = match degrees {
         Degrees::Infinite => "inf".to_owned(),
         Degrees::Finite(nu) => format!("{nu:.0}"),

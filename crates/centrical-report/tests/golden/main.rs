@@ -1,13 +1,13 @@
 //! Our own output, pinned: it detects change and proves nothing.
 
-use centrical::position::{ThirdPosition, kozlov_2017};
+use centrical::{Position, ThirdPosition};
 use centrical_report::Language;
 use centrical_report::plot::{Axis, Plot, Point, Series};
 
 /// The drawing in the README is what the program draws.
 #[test]
 fn positions_of_the_source() {
-    let drawn = centrical_report::positions_figure(&kozlov_2017(ThirdPosition::AxisOneUp), Language::English);
+    let drawn = centrical_report::positions_figure(&Position::kozlov_2017(ThirdPosition::AxisOneUp), Language::English);
     assert_eq!(drawn, include_str!("../../../../docs/figures/positions.svg"), "run `cargo run --example positions`");
 }
 

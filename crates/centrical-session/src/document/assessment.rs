@@ -1,8 +1,6 @@
 //! How far a calibration can be trusted, as a document: schema `centrical-assessment/1`.
 
-use centrical::uncertainty::{
-    Budget, CurvePoint, Degrees, Improvement, Pattern, PlateauCheck, Validity, coverage_factor,
-};
+use centrical::uncertainty::{Budget, CurvePoint, Degrees, Improvement, Pattern, PlateauCheck, Validity};
 use centrical::{Experiment, Fit, Group, MeasurementModel, Source, Termination};
 use serde::Serialize;
 
@@ -227,7 +225,7 @@ impl AssessedParameter {
     fn of(model: &MeasurementModel, fit: &Fit, budget: &Budget, coverage: f64, j: usize) -> Self {
         let parameter = &model.parameters()[j];
         let degrees = budget.degrees_of_freedom(j);
-        let factor = degrees.map(|degrees| coverage_factor(coverage, degrees));
+        let factor = degrees.map(|degrees| degrees.coverage_factor(coverage));
         let standard_uncertainty = budget.standard_uncertainty(j);
         Self {
             name: parameter.name.clone(),

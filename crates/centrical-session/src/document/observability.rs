@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use centrical::observability::{Condition, CorrelatedGroup, Need, Reason, Remedy};
-use centrical::plan::{ReadingRange, predict};
-use centrical::{Combination, Group, MeasurementModel, SetPoint, Study, Weight, linear};
+use centrical::plan::{Prediction, ReadingRange};
+use centrical::{Combination, Group, MeasurementModel, SetPoint, Study, Weight};
 use serde::Serialize;
 use serde_json::{Map, Value};
 
@@ -39,10 +39,10 @@ impl Subject {
     /// The budget to be expected of a calibration, and the uncertainty of the compensated reading up to the largest load of
     /// the experiment.
     fn prediction(&self) -> Result<PredictionReport, Error> {
-        let prediction =
-            predict(&self.model, &self.weights, &self.nominal).map_err(|source| Error::fit(&self.file, source))?;
+        let prediction = Prediction::of(&self.model, &self.weights, &self.nominal)
+            .map_err(|source| Error::fit(&self.file, source))?;
         let experiment = self.model.experiment();
-        let load = |s: &SetPoint| linear::nominal(experiment, s).norm();
+        let load = |s: &SetPoint| experiment.nominal(s).norm();
         let force = experiment.set_points.iter().map(load).fold(0.0, f64::max);
         PredictionReport::of(&prediction, ReadingRange { force }, PredictionReport::COVERAGE)
             .map_err(|source| Error::fit(&self.file, source))
@@ -258,7 +258,7 @@ impl ObservabilityReport {
             plateaus: subject.weights.len(),
             rank: seen.rank(),
             columns: count,
-            tolerance: centrical::RANK_TOLERANCE,
+            tolerance: centrical::Observability::RANK_TOLERANCE,
             doubtful: seen.is_doubtful(),
             condition_number: seen.condition_number(),
             singular_values: seen.singular_values().to_vec(),

@@ -1,7 +1,7 @@
 //! What a plan will know, as data for documents.
 
 use centrical::plan::{Prediction, ReadingRange};
-use centrical::uncertainty::{Degrees, coverage_factor};
+use centrical::uncertainty::Degrees;
 use centrical::{FitError, Group};
 use serde::Serialize;
 
@@ -73,7 +73,7 @@ impl PredictionReport {
                 group: parameters[j].group,
                 type_a: prediction.type_a(j),
                 combined,
-                expanded: combined.zip(degrees).map(|(u, degrees)| u * coverage_factor(coverage, degrees)),
+                expanded: combined.zip(degrees).map(|(u, degrees)| u * degrees.coverage_factor(coverage)),
                 degrees_of_freedom: degrees.and_then(|degrees| match degrees {
                     Degrees::Finite(nu) => Some(nu),
                     Degrees::Infinite => None,

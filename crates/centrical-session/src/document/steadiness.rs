@@ -3,7 +3,6 @@
 use centrical::reduction::LeftOut;
 use centrical::uncertainty::{
     Creep, Level, OncePerRevolution, PlateauDrift, Repeat, SessionDrift, Slope, TiltComparison, chi_squared_tail,
-    repeats, slope_of_speed,
 };
 use centrical::{Calibration, Experiment, FitError, Observation, SetPoint};
 use serde::{Deserialize, Serialize};
@@ -333,7 +332,7 @@ fn beyond_speed(calibration: &Calibration, reduced: &Reduced, slopes: &[Slope], 
         let by_log_speed = model.linearise(set_point, calibration.fit().state()).setting_error / own;
         let speed = reduced.speeds.get(n).copied().flatten().filter(|_| counts);
         let measured = speed.and_then(|speed| speed.slope);
-        slope.beyond_speed(&by_log_speed, slope_of_speed(experiment.centrifuge.speed_uncertainty, to - from, measured))
+        slope.beyond_speed(&by_log_speed, Slope::of_speed(experiment.centrifuge.speed_uncertainty, to - from, measured))
     };
     slopes.iter().enumerate().map(beyond).collect()
 }
@@ -361,5 +360,5 @@ fn repeated(calibration: &Calibration, reduced: &Reduced) -> Vec<RepeatedPlateau
         chi_squared: repeat.chi_squared,
         probability: repeat.probability,
     };
-    repeats(model, calibration.fit().state(), &plateaus).into_iter().map(summary).collect()
+    Repeat::all(model, calibration.fit().state(), &plateaus).into_iter().map(summary).collect()
 }

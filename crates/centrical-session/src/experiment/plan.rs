@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
+use centrical::ThirdPosition;
 use centrical::plan::{Noise, Normalised};
-use centrical::position::ThirdPosition;
 use centrical::{Kind, MeasurementModel, Parameter, TypeB, Weight};
 use nalgebra::Matrix3;
 use serde::Deserialize;

@@ -16,7 +16,7 @@ use std::f64::consts::TAU;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-use centrical::{Experiment, Rotation, STANDARD_GRAVITY, SetPoint, linear};
+use centrical::{Experiment, Rotation, STANDARD_GRAVITY, SetPoint};
 use centrical_table::{ColumnName, Extent, Field, Rule, Source, TableLines, TableReader, parquet_bytes, write_whole};
 use nalgebra::{Matrix3, Vector3};
 
@@ -94,7 +94,7 @@ impl PlateauTable {
     /// Refuses means that no error of a unit explains: farther from the nominal reading than ten times the largest one of the session. Messages
     /// name `file`.
     pub(crate) fn check_means(&self, file: &Path, experiment: &Experiment) -> Result<(), Error> {
-        let nominal: Vec<_> = experiment.set_points.iter().map(|s| linear::nominal(experiment, s)).collect();
+        let nominal: Vec<_> = experiment.set_points.iter().map(|s| experiment.nominal(s)).collect();
         self.refuse_speeds(file, &nominal)?;
         let most = BEYOND * nominal.iter().map(Vector3::amax).fold(STANDARD_GRAVITY, f64::max);
         for (n, (row, nominal)) in self.rows.iter().zip(&nominal).enumerate() {

@@ -1,7 +1,7 @@
 //! How far the calibration of a session can be trusted: budget, validity, residual patterns, prediction.
 
 use centrical::uncertainty::{Budget, Compensated, CurvePoint, Pattern, Validity};
-use centrical::{Calibration, Data, Fit, FitError, MeasurementModel, Observation, OnProgress, linear};
+use centrical::{Calibration, Data, Fit, FitError, MeasurementModel, Observation, OnProgress};
 use nalgebra::{DMatrix, Vector3};
 
 use super::calibrate::{Problem, as_result};
@@ -112,7 +112,7 @@ fn checks(used: &Calibration, request: &AssessmentRequest) -> Result<(Budget, Va
 /// Highest nominal specific force of the plateaus [m/s^2].
 fn highest(data: &Data) -> f64 {
     let experiment = data.model().experiment();
-    let force = |o: &Observation| linear::nominal(experiment, &experiment.set_points[o.set_point]).amax();
+    let force = |o: &Observation| experiment.nominal(&experiment.set_points[o.set_point]).amax();
     data.observations().iter().map(force).fold(0.0, f64::max)
 }
 

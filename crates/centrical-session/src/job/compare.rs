@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 use std::path::Path;
 
-use centrical::uncertainty::{Comparison, Estimates, compare};
+use centrical::uncertainty::{Comparison, Estimates};
 use nalgebra::{DMatrix, DVector};
 
 use super::history::{Calibrated, Kinds, refuse_other_output, shared_changes};
@@ -104,7 +104,7 @@ fn differences(pair: &[&Calibrated; 2], names: &[String]) -> Comparison {
         covariance,
     };
     let second = (second.0, second.1 + &unlike * unlike.transpose());
-    compare(&estimates(first), &estimates(second))
+    estimates(first).compare(&estimates(second))
 }
 
 /// Years between the dates of two sessions, if both are days.

@@ -1,7 +1,7 @@
 //! Which error model the data of a session speak for.
 
 use centrical::OnProgress;
-use centrical::uncertainty::{Selection, select_beside};
+use centrical::uncertainty::Selection;
 
 use super::calibrate::Problem;
 use crate::error::Error;
@@ -14,5 +14,6 @@ use crate::experiment::Session;
 /// [`Error`] naming the file, the place, what was found and what was expected.
 pub fn select_model(session: &Session, progress: OnProgress) -> Result<Selection, Error> {
     let Problem { model, reduced, .. } = Problem::of(session, progress)?;
-    select_beside(&model, &reduced.observations(), &|_| progress(0)).map_err(|source| Error::fit(&session.file, source))
+    Selection::beside(&model, &reduced.observations(), &|_| progress(0))
+        .map_err(|source| Error::fit(&session.file, source))
 }

@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use centrical::plan::unit_of;
-use centrical::uncertainty::{Method, MonteCarlo, Settings, monte_carlo};
+use centrical::plan::Prediction;
+use centrical::uncertainty::{Method, MonteCarlo, Settings};
 use centrical::{Calibration, Data, FitError, MeasurementModel, Observation, OnProgress, STANDARD_GRAVITY, Weight};
 use nalgebra::Vector3;
 
@@ -68,7 +68,7 @@ impl MonteCarloCase {
     /// [`Error::Fit`] when a weight is invalid.
     pub fn planned(plan: Plan, noise: Option<f64>) -> Result<Self, Error> {
         let Plan { file, model, nominal, weights, .. } = plan;
-        let truth = unit_of(&model, &weights, &nominal).map_err(|source| Error::fit(&file, source))?;
+        let truth = Prediction::unit_of(&model, &weights, &nominal).map_err(|source| Error::fit(&file, source))?;
         let equal = |noise: f64| Weight::equal(weights.len(), noise * 1e-6 * STANDARD_GRAVITY);
         let weights = noise.map_or_else(|| weights.clone(), equal);
         let observation =
@@ -105,7 +105,7 @@ impl MonteCarloCase {
             method: if request.linear { Method::Linear } else { Method::Exact },
         };
         Data::new(&self.model, self.observations.clone())
-            .and_then(|data| monte_carlo(&data, &self.truth, &settings, progress))
+            .and_then(|data| MonteCarlo::of(&data, &self.truth, &settings, progress))
             .map_err(|source| Error::fit(&self.file, source))
     }
 

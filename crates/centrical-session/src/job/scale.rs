@@ -4,7 +4,6 @@
 
 use std::path::PathBuf;
 
-use centrical::linear::nominal;
 use centrical::{Calibration, Group, STANDARD_GRAVITY};
 use nalgebra::Vector3;
 
@@ -86,7 +85,7 @@ fn shares(calibration: &Calibration, axis: usize) -> Vec<(usize, f64)> {
             data.observations().iter().filter(|o| experiment.set_points[o.set_point].mounting == mounting);
         let (mut square, mut product) = (0.0, 0.0);
         for observation in of_mounting {
-            let force: Vector3<f64> = nominal(experiment, &experiment.set_points[observation.set_point]);
+            let force: Vector3<f64> = experiment.nominal(&experiment.set_points[observation.set_point]);
             if force[axis].abs() > LEAST_PART * force.norm() {
                 square += force[axis].powi(2);
                 product += force[axis] * observation.mean[axis];

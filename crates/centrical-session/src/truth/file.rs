@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use centrical::simulate::{Equipment, draw_attitudes, draw_truth};
+use centrical::simulate::{Equipment, Simulation};
 use centrical::{Extension, MeasurementModel, Parameter};
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -82,7 +82,7 @@ impl Truth {
         let form: TruthForm = from_toml(file, &text)?;
         let tables = (&form.machine, &form.sensor, &form.recorder, &form.tachometer, &form.counter, &form.hand);
         let equipment = equipment(file, tables, &plan.speeds, plan.type_b.bias_change)?;
-        let attitudes = |number| draw_attitudes(equipment.hand.rests, seed, number);
+        let attitudes = |number| Simulation::draw_attitudes(equipment.hand.rests, seed, number);
         let tables = plan.rest_tables.iter().enumerate();
         let rests = tables.map(|(number, table)| table.as_planned(|| attitudes(number))).collect();
         let plan = plan.clone().with_rest_tables(rests);
@@ -119,7 +119,7 @@ fn values(
         let expected = "typical magnitudes, from 0 to a million of them";
         return Err(TomlPath::table(file, "typical").unexpected("size", format!("{size:?}"), expected));
     }
-    let mut values = draw_truth(model, size, seed);
+    let mut values = Simulation::draw_truth(model, size, seed);
     values[sources..].fill(0.0);
     for (name, quantity) in &form.parameters {
         let Some(j) = parameters.find(name) else {

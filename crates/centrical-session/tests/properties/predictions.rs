@@ -4,8 +4,8 @@
 use std::path::{Path, PathBuf};
 
 use centrical::TypeB;
-use centrical::plan::predict;
-use centrical::uncertainty::{Method, Settings, monte_carlo};
+use centrical::plan::Prediction;
+use centrical::uncertainty::{Method, MonteCarlo, Settings};
 use centrical::{Data, MeasurementModel, Observation, Weight};
 use centrical_session::{Plan, read_plan, read_planning, unwatched};
 use nalgebra::Vector3;
@@ -78,13 +78,13 @@ impl Case {
     /// Scatter over prediction of every parameter that is determined: by both alike.
     fn compared(&self, name: &str, truth: &[f64], stated: &TypeB) -> Vec<Compared> {
         let model = self.model.clone().with_stated(*stated);
-        let prediction = predict(&model, &self.weights, truth).unwrap();
+        let prediction = Prediction::of(&model, &self.weights, truth).unwrap();
         let observation =
             |w: &Weight| Observation { set_point: w.set_point, mean: Vector3::zeros(), covariance: w.covariance };
         let observations: Vec<Observation> = self.weights.iter().map(observation).collect();
         let settings = Settings { runs: RUNS, seed: 3, coverage: 0.95, method: Method::Exact };
         let data = Data::new(&model, observations).unwrap();
-        let shown = monte_carlo(&data, truth, &settings, &unwatched).unwrap();
+        let shown = MonteCarlo::of(&data, truth, &settings, &unwatched).unwrap();
         let mut compared = Vec::new();
         for (j, statistics) in shown.parameters.iter().enumerate() {
             let parameter = &self.model.parameters()[j].name;
@@ -153,7 +153,7 @@ fn every_parameter_of_the_source_scatters_as_predicted() {
 fn every_parameter_of_the_source_as_printed_scatters_as_predicted() {
     let printed = Case::of("normalised.toml", "opposite");
     assert_eq!(printed.compare("[K5.5] as printed, type A", &printed.truth(1.0), &TypeB::default()), 43);
-    let prediction = |truth: &[f64]| predict(&printed.model, &printed.weights, truth).unwrap();
+    let prediction = |truth: &[f64]| Prediction::of(&printed.model, &printed.weights, truth).unwrap();
     let (of_none, of_typical) = (prediction(&printed.truth(0.0)), prediction(&printed.truth(1.0)));
     for j in 0..printed.model.parameters().len() {
         assert_eq!(of_none.standard_uncertainty(j), of_typical.standard_uncertainty(j));
@@ -174,7 +174,7 @@ fn every_parameter_of_the_source_as_printed_scatters_as_predicted() {
     let settings = Settings { runs: 4000, seed: 3, coverage: 0.95, method: Method::Exact };
     let zero = quiet.truth(0.0);
     let data = Data::new(model, observations).unwrap();
-    let shown = monte_carlo(&data, &zero, &settings, &unwatched).unwrap();
+    let shown = MonteCarlo::of(&data, &zero, &settings, &unwatched).unwrap();
     let statistics = shown.parameters[j].unwrap();
     let ratio = statistics.standard_deviation / statistics.stated;
     println!("[K5.5] as printed, at zero, a hundredth of the noise: delta_2[3] {ratio:.4}");

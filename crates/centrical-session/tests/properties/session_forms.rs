@@ -113,7 +113,7 @@ fn instrument_axes_are_the_rows() {
     // "+2 -3 -1": axes 1, 2, 3 point along +y2, -y3, -y1; the printed P_6.
     let p_6 = Matrix3::new(0.0, 1.0, 0.0, 0.0, 0.0, -1.0, -1.0, 0.0, 0.0);
     assert_eq!(experiment("\"+1 +2 +3\"", "\"+2 -3 -1\"").positions[0].p_zy, p_6);
-    let presets = centrical::position::kozlov_2017(centrical::position::ThirdPosition::AxisOneUp);
+    let presets = centrical::Position::kozlov_2017(centrical::ThirdPosition::AxisOneUp);
     for (preset, axes) in presets.iter().zip(["1 2 3", "-1 -2 3", "3 1 2", "3 -1 -2", "-2 -3 1", "2 -3 -1"]) {
         assert_eq!(experiment("+1 +2 +3", axes).positions[0].p_zy, preset.p_zy, "{axes}");
     }

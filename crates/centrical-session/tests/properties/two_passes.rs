@@ -3,8 +3,8 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use centrical::SetPoint;
 use centrical::reduction::{NoiseModel, ReducedMounting, ScheduledPlateau};
-use centrical::{SetPoint, linear};
 use centrical_session::{RecordWriter, Session, read_record, reduce_without_inputs, unwatched};
 use tempfile::TempDir;
 
@@ -37,7 +37,7 @@ fn from_files_as_from_memory() {
     let experiment = &session.experiment;
     let mounting = |m: usize| -> ReducedMounting {
         let of_mounting = experiment.set_points.iter().filter(|s| s.mounting == m);
-        let scheduled = |s: &SetPoint| ScheduledPlateau { omega: s.omega, nominal_z: linear::nominal(experiment, s) };
+        let scheduled = |s: &SetPoint| ScheduledPlateau { omega: s.omega, nominal_z: experiment.nominal(s) };
         let schedule: Vec<ScheduledPlateau> = of_mounting.map(scheduled).collect();
         let telemetry = session.telemetry(m).unwrap();
         session.record(m).unwrap().reduce(telemetry.as_ref(), &schedule).unwrap()

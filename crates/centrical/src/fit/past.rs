@@ -20,7 +20,7 @@ use super::filter::Readings;
 use super::global::{Attitude, Gathered, Global, PlateauEquations};
 use super::linearised::Linearised;
 use crate::linalg::factor::Factor;
-use crate::model::{FitError, MeasurementModel, Observation, linear};
+use crate::model::{FitError, MeasurementModel, Observation};
 
 /// Plateaus linearised at a reference, and at zero.
 #[derive(Debug, Clone)]
@@ -154,7 +154,7 @@ impl<'m> Past<'m> {
     /// Adds plateaus of a group to its kin.
     fn join(&mut self, group: usize, linearised: &Linearised) {
         let experiment = self.model.experiment();
-        let force = linear::nominal(experiment, &experiment.set_points[linearised.set_point()]).norm();
+        let force = experiment.nominal(&experiment.set_points[linearised.set_point()]).norm();
         let unknowns = linearised.at().by_unknowns().map(|(unknown, _)| unknown).collect();
         // The bits of a positive number above those of its fraction are the power of two.
         let power = force.to_bits() >> (f64::MANTISSA_DIGITS - 1);

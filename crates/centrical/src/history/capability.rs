@@ -2,7 +2,7 @@
 
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
-use crate::uncertainty::{Degrees, coverage_factor};
+use crate::uncertainty::Degrees;
 
 /// How a parameter of many units lies between its limits.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -44,7 +44,7 @@ impl Capability {
             Index { value, interval: [at(0.5 - 0.5 * coverage), at(0.5 + 0.5 * coverage)] }
         });
         let doubt = (1.0 / (9.0 * n as f64) + nearer * nearer / (2.0 * nu)).sqrt();
-        let half = coverage_factor(coverage, Degrees::Infinite) * doubt;
+        let half = Degrees::Infinite.coverage_factor(coverage) * doubt;
         Some(Capability { mean, deviation, cp, cpk: Index { value: nearer, interval: [nearer - half, nearer + half] } })
     }
 }

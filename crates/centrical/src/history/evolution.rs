@@ -12,7 +12,7 @@ use super::law::{Law, Part};
 use super::line::{Curve, Line};
 use super::quantiles::Quantiles;
 use super::series::Series;
-use crate::uncertainty::{Degrees, coverage_factor};
+use crate::uncertainty::Degrees;
 
 /// An estimate and its law.
 #[derive(Debug, Clone, PartialEq)]
@@ -37,7 +37,7 @@ impl Estimated {
     pub fn interval(&self, coverage: f64) -> [f64; 2] {
         match &self.spread {
             Spread::StudentsT(nu) => {
-                let half = coverage_factor(coverage, Degrees::Finite(*nu as f64)) * self.standard_uncertainty;
+                let half = Degrees::Finite(*nu as f64).coverage_factor(coverage) * self.standard_uncertainty;
                 [self.value - half, self.value + half]
             }
             Spread::Law(law) => law.interval(coverage),

@@ -7,9 +7,6 @@ use super::position::{Position, SwitchOn};
 /// Standard gravity, exact by definition [m/s^2]: what "1 g" means in every quantity shown to people.
 pub const STANDARD_GRAVITY: f64 = 9.80665;
 
-/// Mean sidereal rate of the Earth's rotation [rad/s], IERS conventions.
-pub const EARTH_RATE: f64 = 7.292_115e-5;
-
 /// Relative difference of two measured speeds that were set alike: far above the stability of a precision centrifuge, far
 /// below the steps between the speeds of a schedule.
 const SAME_SPEED: f64 = 1e-3;
@@ -205,10 +202,13 @@ impl SetPoint {
 }
 
 impl Site {
+    /// Mean sidereal rate of the Earth's rotation [rad/s], IERS conventions.
+    pub const EARTH_RATE: f64 = 7.292_115e-5;
+
     /// `2 omega_E sin(latitude)` [rad/s]: with it `Omega^2` becomes `Omega^2 + coriolis Omega`, the constant
     /// part of the Coriolis term in the arm frame (`docs/source-and-findings.md`). Zero when no latitude is given.
     pub fn coriolis(&self) -> f64 {
-        self.latitude.map_or(0.0, |latitude| 2.0 * EARTH_RATE * latitude.sin())
+        self.latitude.map_or(0.0, |latitude| 2.0 * Self::EARTH_RATE * latitude.sin())
     }
 }
 

@@ -6,8 +6,6 @@ use nalgebra::Vector3;
 
 use super::experiment::{Experiment, History, STANDARD_GRAVITY, SetPoint};
 
-use super::nominal::nominal;
-
 /// The part of a plateau's force, or of a warm-up, that is left on the next.
 const REMEMBERED: f64 = 0.5;
 
@@ -33,7 +31,7 @@ pub(super) fn fill(experiment: &mut Experiment) {
             Some(_) => REMEMBERED * warm_up,
         };
         previous = Some((set_point.mounting, speed));
-        let here = nominal(experiment, &set_point);
+        let here = experiment.nominal(&set_point);
         // A unit that is mounted on the arm has been turned on the way there.
         let is_known = before.is_some() || !experiment.is_on_arm(set_point.mounting);
         let turn = force.filter(|_| is_known).map_or(Vector3::zeros(), |force: Vector3<f64>| (here - force).map(sense));

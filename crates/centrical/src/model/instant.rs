@@ -14,7 +14,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::effect::Effect;
 use super::exact::Geometry;
-use super::experiment::{EARTH_RATE, SetPoint, Site};
+use super::experiment::{SetPoint, Site};
 use super::frame::rotation;
 use super::measurement::MeasurementModel;
 use super::parameter::Parameter;
@@ -124,5 +124,6 @@ impl MountedUnit {
 
 /// The Earth's rate in reference axes [rad/s]; zero when no latitude is given.
 fn earth_rate(site: &Site) -> Vector3<f64> {
-    site.latitude.map_or_else(Vector3::zeros, |latitude| Vector3::new(0.0, latitude.cos(), latitude.sin()) * EARTH_RATE)
+    site.latitude
+        .map_or_else(Vector3::zeros, |latitude| Vector3::new(0.0, latitude.cos(), latitude.sin()) * Site::EARTH_RATE)
 }

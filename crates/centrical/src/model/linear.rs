@@ -10,7 +10,6 @@ use super::experiment::SetPoint;
 use super::kind::Kind;
 use super::measurement::{Linearisation, MeasurementModel};
 use super::nominal::Nominal;
-pub use super::nominal::nominal;
 use super::share::Share;
 
 impl MeasurementModel {
@@ -19,7 +18,7 @@ impl MeasurementModel {
     pub fn linearise_at_zero(&self, set_point: &SetPoint) -> Linearisation {
         let experiment = &self.experiment;
         let n = Nominal::of(experiment, set_point);
-        let f0 = nominal(experiment, set_point);
+        let f0 = experiment.nominal(set_point);
         let columns = (0..self.parameters.len())
             .map(|column| (column, self.column_of_gh(column, set_point, &n, &f0)))
             .filter(|(_, derivative)| *derivative != Vector3::zeros())

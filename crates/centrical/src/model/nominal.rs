@@ -5,11 +5,13 @@ use nalgebra::{Matrix3, Vector3};
 use super::experiment::{Experiment, SetPoint};
 use super::frame::hat;
 
-/// Nominal ideal reading `f0_z` [m/s^2] of a plateau [K5.1]:
-/// `P_k (g e3 + D R0_k) + sum_i e_i e_i^T M_k rho0 e_i`.
-pub fn nominal(experiment: &Experiment, set_point: &SetPoint) -> Vector3<f64> {
-    let Nominal { g_e3, d, p, m, r0, rho0 } = Nominal::of(experiment, set_point);
-    p * (g_e3 + d * r0) + (m * rho0).diagonal()
+impl Experiment {
+    /// Nominal ideal reading `f0_z` [m/s^2] of a plateau [K5.1]:
+    /// `P_k (g e3 + D R0_k) + sum_i e_i e_i^T M_k rho0 e_i`.
+    pub fn nominal(&self, set_point: &SetPoint) -> Vector3<f64> {
+        let Nominal { g_e3, d, p, m, r0, rho0 } = Nominal::of(self, set_point);
+        p * (g_e3 + d * r0) + (m * rho0).diagonal()
+    }
 }
 
 /// The source's letters for one plateau.

@@ -85,22 +85,24 @@ pub enum ThirdPosition {
     AxisOneDown,
 }
 
-/// The source's six positions "1" to "6" in the pairs A, B, C.
-///
-/// `P_1`, `P_2` are printed; `P_6` follows from the printed `z^(6)`; the second of each pair is the first
-/// turned by 180 deg about the vertical, `P_2k = P_2k-1 diag(-1, -1, 1)`.
-pub fn kozlov_2017(third: ThirdPosition) -> Vec<Position> {
-    let half_turn = Matrix3::from_diagonal(&nalgebra::Vector3::new(-1.0, -1.0, 1.0));
-    let p_1 = Matrix3::identity();
-    let p_3 = match third {
-        ThirdPosition::AxisOneUp => Matrix3::new(0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0),
-        ThirdPosition::AxisOneDown => Matrix3::new(0.0, 0.0, -1.0, 1.0, 0.0, 0.0, 0.0, -1.0, 0.0),
-    };
-    let p_6 = Matrix3::new(0.0, 1.0, 0.0, 0.0, 0.0, -1.0, -1.0, 0.0, 0.0);
-    let turns = [p_1, p_1 * half_turn, p_3, p_3 * half_turn, p_6 * half_turn, p_6];
-    let pairs = ["A", "A", "B", "B", "C", "C"];
-    (1..)
-        .zip(turns.into_iter().zip(pairs))
-        .map(|(k, (p_zy, pair))| Position::on_arm(k.to_string(), p_zy, pair))
-        .collect()
+impl Position {
+    /// The source's six positions "1" to "6" in the pairs A, B, C.
+    ///
+    /// `P_1`, `P_2` are printed; `P_6` follows from the printed `z^(6)`; the second of each pair is the first
+    /// turned by 180 deg about the vertical, `P_2k = P_2k-1 diag(-1, -1, 1)`.
+    pub fn kozlov_2017(third: ThirdPosition) -> Vec<Position> {
+        let half_turn = Matrix3::from_diagonal(&nalgebra::Vector3::new(-1.0, -1.0, 1.0));
+        let p_1 = Matrix3::identity();
+        let p_3 = match third {
+            ThirdPosition::AxisOneUp => Matrix3::new(0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0),
+            ThirdPosition::AxisOneDown => Matrix3::new(0.0, 0.0, -1.0, 1.0, 0.0, 0.0, 0.0, -1.0, 0.0),
+        };
+        let p_6 = Matrix3::new(0.0, 1.0, 0.0, 0.0, 0.0, -1.0, -1.0, 0.0, 0.0);
+        let turns = [p_1, p_1 * half_turn, p_3, p_3 * half_turn, p_6 * half_turn, p_6];
+        let pairs = ["A", "A", "B", "B", "C", "C"];
+        (1..)
+            .zip(turns.into_iter().zip(pairs))
+            .map(|(k, (p_zy, pair))| Position::on_arm(k.to_string(), p_zy, pair))
+            .collect()
+    }
 }

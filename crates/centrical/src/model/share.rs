@@ -3,9 +3,9 @@
 use nalgebra::Vector3;
 
 use super::effect::{Course, Effect, Scope};
-use super::experiment::{EARTH_RATE, SetPoint};
+use super::experiment::{SetPoint, Site};
 use super::measurement::MeasurementModel;
-use super::nominal::{Nominal, nominal};
+use super::nominal::Nominal;
 
 /// How one unit of an effect enters a plateau.
 pub(super) enum Share {
@@ -70,10 +70,10 @@ impl MeasurementModel {
             Effect::Gravity => Share::Gravity,
             Effect::Latitude => {
                 let cosine = experiment.site.latitude.map_or(0.0, f64::cos);
-                Share::Rate(set_point.omega * 2.0 * EARTH_RATE * cosine)
+                Share::Rate(set_point.omega * 2.0 * Site::EARTH_RATE * cosine)
             }
             Effect::Monomial { axis, monomial, scope } => {
-                let value = || monomial.value(nominal(experiment, set_point).into());
+                let value = || monomial.value(experiment.nominal(set_point).into());
                 let is_here = match scope {
                     Scope::Session => true,
                     Scope::Mounting(mounting) => mounting == here,
@@ -99,7 +99,7 @@ impl MeasurementModel {
     /// Value on a plateau of what a disturbance follows.
     fn course(&self, set_point: &SetPoint, axis: usize, course: Course) -> f64 {
         let history = &set_point.history;
-        let f0 = || nominal(&self.experiment, set_point)[axis];
+        let f0 = || self.experiment.nominal(set_point)[axis];
         match course {
             Course::Spinning => f64::from(u8::from(!set_point.is_rest())),
             Course::Speed => set_point.omega.abs(),

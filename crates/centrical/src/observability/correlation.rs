@@ -2,15 +2,11 @@
 
 use nalgebra::DMatrix;
 
-/// Correlation from which two estimates count as one: the standard uncertainty of each is then seven times
-/// (`1 / sqrt(1 - 0.99^2)`) what it would be if the other were known.
-pub const STRONG_CORRELATION: f64 = 0.99;
-
 /// Two collinear parameters belong to one group when they share half of their variance.
 const SHARED_VARIANCE: f64 = 0.5;
 
 /// Parameters, each nearly a combination of the others: its column has a multiple correlation of at
-/// least [`STRONG_CORRELATION`] with all other columns, so its standard uncertainty is at least seven times what it
+/// least [`CorrelatedGroup::STRONG`] with all other columns, so its standard uncertainty is at least seven times what it
 /// would be with the others known. A pair with a correlation of 0.99 is such a group; so are three or more
 /// parameters without a pair correlated that much.
 #[derive(Debug, Clone, PartialEq)]
@@ -19,15 +15,22 @@ pub struct CorrelatedGroup {
     pub parameters: Vec<usize>,
     /// Multiple correlation of each with all other parameters.
     pub multiple_correlations: Vec<f64>,
-    /// The pairs with a correlation of estimates of at least [`STRONG_CORRELATION`] in magnitude.
+    /// The pairs with a correlation of estimates of at least [`CorrelatedGroup::STRONG`] in magnitude.
     pub pairs: Vec<(usize, usize, f64)>,
+}
+
+impl CorrelatedGroup {
+    /// Correlation from which two estimates count as one: the standard uncertainty of each is then seven times
+    /// (`1 / sqrt(1 - 0.99^2)`) what it would be if the other were known.
+    pub const STRONG: f64 = 0.99;
 }
 
 /// Connected components, by shared variance, of the collinear parameters among the estimable ones; `covariance` is that of
 /// unknowns in units of the lengths of their columns.
 pub(super) fn groups(covariance: &DMatrix<f64>, is_estimable: impl Fn(usize) -> bool) -> Vec<CorrelatedGroup> {
-    let mut left: Vec<usize> =
-        (0..covariance.ncols()).filter(|&j| is_estimable(j) && multiple(covariance, j) >= STRONG_CORRELATION).collect();
+    let mut left: Vec<usize> = (0..covariance.ncols())
+        .filter(|&j| is_estimable(j) && multiple(covariance, j) >= CorrelatedGroup::STRONG)
+        .collect();
     let mut groups = Vec::new();
     while !left.is_empty() {
         let mut members = vec![left.remove(0)];
@@ -49,7 +52,7 @@ fn group(covariance: &DMatrix<f64>, parameters: Vec<usize>) -> CorrelatedGroup {
     for (n, &i) in parameters.iter().enumerate() {
         for &j in &parameters[n + 1..] {
             let correlation = pair(covariance, i, j);
-            if correlation.abs() >= STRONG_CORRELATION {
+            if correlation.abs() >= CorrelatedGroup::STRONG {
                 pairs.push((i, j, correlation));
             }
         }

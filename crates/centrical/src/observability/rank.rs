@@ -9,13 +9,6 @@ use super::correlation::{self, CorrelatedGroup};
 use super::direction::{self, NullDirection, TAKES_PART};
 use crate::linalg::elimination::{Elimination, Own};
 
-/// Singular values below this part of the largest count as zero.
-///
-/// Rounding in forming and decomposing a design of some thousand rows leaves zero singular values at about
-/// `1e-16` to `1e-14`; the smallest genuine ones of the field's experiments are at `1e-5` (one speed,
-/// docs/source-and-findings.md). The tolerance stands in the middle between `1e-15` and `1e-5`.
-pub const RANK_TOLERANCE: f64 = 1e-10;
-
 /// A singular value within this factor of the tolerance makes the rank doubtful.
 const DOUBTFUL: f64 = 100.0;
 
@@ -51,6 +44,13 @@ impl PartialEq for Observability {
 }
 
 impl Observability {
+    /// Singular values below this part of the largest count as zero.
+    ///
+    /// Rounding in forming and decomposing a design of some thousand rows leaves zero singular values at about
+    /// `1e-16` to `1e-14`; the smallest genuine ones of the field's experiments are at `1e-5` (one speed,
+    /// docs/source-and-findings.md). The tolerance stands in the middle between `1e-15` and `1e-5`.
+    pub const RANK_TOLERANCE: f64 = 1e-10;
+
     /// Analyses a weighted design matrix (`n x (p + q)`, any `n`, all entries finite) of `p` unknowns and `influences`, whose own equations
     /// stand last; `own` are unknowns of few equations.
     pub(crate) fn of(rows: DMatrix<f64>, own: &[Own], influences: usize) -> Self {
@@ -74,7 +74,7 @@ impl Observability {
             column /= *norm;
         }
         let (singular_values, vectors) = decompose(rows);
-        let tolerance = RANK_TOLERANCE * singular_values.first().copied().unwrap_or(0.0);
+        let tolerance = Observability::RANK_TOLERANCE * singular_values.first().copied().unwrap_or(0.0);
         let seen = singular_values.iter().filter(|&&s| s > tolerance).count();
         let gap = if seen > 0 { singular_values[seen - 1] / singular_values[0] } else { 1.0 };
         let rounding = (NULL_ROUNDING / gap).min(TAKES_PART);
@@ -106,7 +106,7 @@ impl Observability {
         &self.singular_values
     }
 
-    /// Number of singular values above [`RANK_TOLERANCE`] times the largest, and of unknowns that are eliminated.
+    /// Number of singular values above [`Observability::RANK_TOLERANCE`] times the largest, and of unknowns that are eliminated.
     pub fn rank(&self) -> usize {
         self.columns() - self.lost()
     }
@@ -124,7 +124,7 @@ impl Observability {
     /// Whether a singular value lies within two decades of the tolerance, on either side: the rank is then a
     /// matter of rounding and must not be relied on.
     pub fn is_doubtful(&self) -> bool {
-        let tolerance = RANK_TOLERANCE * self.singular_values.first().copied().unwrap_or(0.0);
+        let tolerance = Observability::RANK_TOLERANCE * self.singular_values.first().copied().unwrap_or(0.0);
         self.singular_values.iter().any(|&s| s > tolerance / DOUBTFUL && s < tolerance * DOUBTFUL)
     }
 

@@ -3,7 +3,7 @@
 use super::candidates::{Candidates, Schedule, Visit};
 use super::criterion::Criterion;
 use super::error::PlanError;
-use super::search::{Effort, Plan, Problem, best_for_time};
+use super::search::{Effort, Plan, Problem};
 use crate::progress::{OnProgress, unwatched};
 
 /// The best plan for one time.
@@ -15,35 +15,35 @@ pub struct FrontierPoint {
     pub plan: Plan,
 }
 
-/// The best plans for some `times` [s], those that are too short for anything left out.
-///
-/// # Errors
-/// As [`best_for_time`], but for the time.
-pub fn frontier(
-    candidates: &Candidates,
-    criterion: &Criterion,
-    times: &[f64],
-    effort: Effort,
-    progress: OnProgress<()>,
-) -> Result<Vec<FrontierPoint>, PlanError> {
-    let mut points = Vec::with_capacity(times.len());
-    for &time in times {
-        match best_for_time(candidates, criterion, time, effort, progress) {
-            Ok(plan) => points.push(FrontierPoint { time, plan }),
-            Err(PlanError::TooShort { .. }) => {}
-            Err(error) => return Err(error),
-        }
-    }
-    Ok(points)
-}
-
 impl Candidates {
+    /// The best plans for some `times` [s], those that are too short for anything left out.
+    ///
+    /// # Errors
+    /// As [`Self::best_for_time`], but for the time.
+    pub fn frontier(
+        &self,
+        criterion: &Criterion,
+        times: &[f64],
+        effort: Effort,
+        progress: OnProgress<()>,
+    ) -> Result<Vec<FrontierPoint>, PlanError> {
+        let mut points = Vec::with_capacity(times.len());
+        for &time in times {
+            match self.best_for_time(criterion, time, effort, progress) {
+                Ok(plan) => points.push(FrontierPoint { time, plan }),
+                Err(PlanError::TooShort { .. }) => {}
+                Err(error) => return Err(error),
+            }
+        }
+        Ok(points)
+    }
+
     /// The uniform plan: every candidate once, all for the longest of the durations for which `time` [s] suffices. It is one of
     /// the plans that a search considers, so no bound is above it. Returns the schedule and its criterion (variance units);
     /// `None` if the time suffices for no duration.
     ///
     /// # Errors
-    /// As [`best_for_time`], but for the time.
+    /// As [`Self::best_for_time`], but for the time.
     pub fn uniform(&self, criterion: &Criterion, time: f64) -> Result<Option<(Schedule, f64)>, PlanError> {
         let longest = self.durations.iter().rev().find(|duration| self.time_of(&self.each_once(**duration)) <= time);
         longest.map(|duration| self.valued(criterion, *duration)).transpose()
@@ -52,7 +52,7 @@ impl Candidates {
     /// Every candidate once, all for the duration that fills `time` [s], which need not be one of the durations.
     ///
     /// # Errors
-    /// As [`best_for_time`], but for the time.
+    /// As [`Self::best_for_time`], but for the time.
     pub fn filled(&self, criterion: &Criterion, time: f64) -> Result<Option<(Schedule, f64)>, PlanError> {
         let duration = (time - self.time_of(&self.each_once(0.0))) / self.len() as f64;
         (duration > 0.0).then(|| self.valued(criterion, duration)).transpose()

@@ -5,8 +5,8 @@
 use super::candidates::{Candidates, Schedule, Visit};
 use super::criterion::{Criterion, Goal};
 use super::error::PlanError;
-use super::prediction::{Prediction, predict};
-use super::search::{Effort, Plan, best_for_time, shortest_for_goals};
+use super::prediction::Prediction;
+use super::search::{Effort, Plan};
 use crate::model::{FitError, MeasurementModel, Parameter};
 use crate::progress::OnProgress;
 
@@ -101,7 +101,7 @@ impl Task {
         let model = scenario.model.in_experiment(experiment);
         let expected = |p: &Parameter| scenario.model.parameters().find(&p.name).map_or(0.0, |j| scenario.nominal[j]);
         let nominal: Vec<f64> = model.parameters().iter().map(expected).collect();
-        predict(&model, &weights, &nominal)
+        Prediction::of(&model, &weights, &nominal)
     }
 
     /// The goals as a prediction reaches them.
@@ -147,8 +147,8 @@ impl Task {
 
     fn best(&self, criterion: &Criterion, effort: Effort, progress: OnProgress<()>) -> Result<Plan, PlanError> {
         match self.time {
-            Some(time) => best_for_time(&self.candidates, criterion, time, effort, progress),
-            None => shortest_for_goals(&self.candidates, criterion, RESOLUTION, effort, progress),
+            Some(time) => self.candidates.best_for_time(criterion, time, effort, progress),
+            None => self.candidates.shortest_for_goals(criterion, RESOLUTION, effort, progress),
         }
     }
 

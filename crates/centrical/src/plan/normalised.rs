@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use nalgebra::{Matrix3, Vector3};
 
-use crate::model::position::{ThirdPosition, kozlov_2017};
+use crate::model::position::{Position, ThirdPosition};
 use crate::model::{
     Centrifuge, Experiment, Mounting, PairRelation, ReferencePoint, STANDARD_GRAVITY, SetPoint, Site, Unit,
 };
@@ -58,7 +58,7 @@ impl Normalised {
 
     /// The experiment in SI units, ordered by position, then radius, then speed.
     pub fn experiment(&self) -> Experiment {
-        let positions = kozlov_2017(self.third);
+        let positions = Position::kozlov_2017(self.third);
         let mountings: Vec<Mounting> = (0..positions.len())
             .flat_map(|position| self.radii.iter().map(move |radius| (position, radius)))
             .map(|(position, radius)| Mounting { position, arm_y: Vector3::x() * (radius * self.arm) })

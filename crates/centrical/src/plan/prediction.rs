@@ -34,27 +34,31 @@ pub struct Prediction {
     affected: Vec<bool>,
 }
 
-/// Predicts the budget of a calibration of `model` with the plateaus' `weights`, for the unknowns `truth` (in the order of the
-/// model's parameters; all zero for a plan, which is predicted for typical ones where its rank is short).
-///
-/// # Errors
-/// [`FitError`] when a weight is invalid.
-pub fn predict(model: &MeasurementModel, weights: &[Weight], truth: &[f64]) -> Result<Prediction, FitError> {
-    let (truth, structure) = unit_with_structure(model, weights, truth)?;
-    let perfect = Data::new(model, readings(model, weights, &truth))?;
-    let calibration = Calibration::with_structure(structure, &perfect)?;
-    let budget = calibration.budget()?;
-    let affected = (0..truth.len()).map(|j| budget.is_affected_by_null_space(calibration.fit(), j)).collect();
-    Ok(Prediction { model: model.clone(), weights: weights.to_vec(), truth, budget, affected })
+impl Prediction {
+    /// Predicts the budget of a calibration of `model` with the plateaus' `weights`, for the unknowns `truth` (in the order of the
+    /// model's parameters; all zero for a plan, which is predicted for typical ones where its rank is short).
+    ///
+    /// # Errors
+    /// [`FitError`] when a weight is invalid.
+    pub fn of(model: &MeasurementModel, weights: &[Weight], truth: &[f64]) -> Result<Prediction, FitError> {
+        let (truth, structure) = unit_with_structure(model, weights, truth)?;
+        let perfect = Data::new(model, readings(model, weights, &truth))?;
+        let calibration = Calibration::with_structure(structure, &perfect)?;
+        let budget = calibration.budget()?;
+        let affected = (0..truth.len()).map(|j| budget.is_affected_by_null_space(calibration.fit(), j)).collect();
+        Ok(Prediction { model: model.clone(), weights: weights.to_vec(), truth, budget, affected })
+    }
 }
 
-/// The unknowns that a plan is predicted for, and its calibrations are drawn for: those expected, or where none is and the
-/// rank is short, typical ones, signs in turn.
-///
-/// # Errors
-/// As [`predict`].
-pub fn unit_of(model: &MeasurementModel, weights: &[Weight], expected: &[f64]) -> Result<Vec<f64>, FitError> {
-    unit_with_structure(model, weights, expected).map(|(unit, _)| unit)
+impl Prediction {
+    /// The unknowns that a plan is predicted for, and its calibrations are drawn for: those expected, or where none is and the
+    /// rank is short, typical ones, signs in turn.
+    ///
+    /// # Errors
+    /// As [`predict`].
+    pub fn unit_of(model: &MeasurementModel, weights: &[Weight], expected: &[f64]) -> Result<Vec<f64>, FitError> {
+        unit_with_structure(model, weights, expected).map(|(unit, _)| unit)
+    }
 }
 
 fn unit_with_structure(

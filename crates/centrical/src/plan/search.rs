@@ -18,33 +18,35 @@ use super::criterion::Criterion;
 use super::error::PlanError;
 use crate::progress::OnProgress;
 
-/// The best schedule within `time` [s]. `progress` is called again and again; it changes nothing but whether the search goes on.
-///
-/// # Errors
-/// [`PlanError`] when there is no plan, or the caller stops.
-pub fn best_for_time(
-    candidates: &Candidates,
-    criterion: &Criterion,
-    time: f64,
-    effort: Effort,
-    progress: OnProgress<()>,
-) -> Result<Plan, PlanError> {
-    let problem = Problem::new(candidates, criterion, progress)?;
-    problem.check_time(time)?;
-    Ok(problem.watch.found(Tree::new(&problem, time, effort).run())?)
-}
+impl Candidates {
+    /// The best schedule within `time` [s]. `progress` is called again and again; it changes nothing but whether the search goes on.
+    ///
+    /// # Errors
+    /// [`PlanError`] when there is no plan, or the caller stops.
+    pub fn best_for_time(
+        &self,
+        criterion: &Criterion,
+        time: f64,
+        effort: Effort,
+        progress: OnProgress<()>,
+    ) -> Result<Plan, PlanError> {
+        let problem = Problem::new(self, criterion, progress)?;
+        problem.check_time(time)?;
+        Ok(problem.watch.found(Tree::new(&problem, time, effort).run())?)
+    }
 
-/// The shortest schedule that meets every goal, to `resolution` of its time (0.01: 1 %), and a time in which no schedule does.
-///
-/// # Errors
-/// [`PlanError::OutOfReach`] when no schedule does; otherwise as [`best_for_time`].
-pub fn shortest_for_goals(
-    candidates: &Candidates,
-    criterion: &Criterion,
-    resolution: f64,
-    effort: Effort,
-    progress: OnProgress<()>,
-) -> Result<Plan, PlanError> {
-    let problem = Problem::new(candidates, criterion, progress)?;
-    Ok(problem.watch.found(Shortest::new(&problem, resolution, effort)?.run())?)
+    /// The shortest schedule that meets every goal, to `resolution` of its time (0.01: 1 %), and a time in which no schedule does.
+    ///
+    /// # Errors
+    /// [`PlanError::OutOfReach`] when no schedule does; otherwise as [`Candidates::best_for_time`].
+    pub fn shortest_for_goals(
+        &self,
+        criterion: &Criterion,
+        resolution: f64,
+        effort: Effort,
+        progress: OnProgress<()>,
+    ) -> Result<Plan, PlanError> {
+        let problem = Problem::new(self, criterion, progress)?;
+        Ok(problem.watch.found(Shortest::new(&problem, resolution, effort)?.run())?)
+    }
 }

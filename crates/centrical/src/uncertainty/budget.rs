@@ -6,7 +6,7 @@
 
 use nalgebra::{DMatrix, Vector3};
 
-use super::coverage::{Degrees, effective_degrees_of_freedom};
+use super::coverage::Degrees;
 use crate::fit::{Calibration, Fit, Gain};
 use crate::model::whitening::noise_factor;
 use crate::model::{FitError, MeasurementModel, Observation, Source};
@@ -161,7 +161,7 @@ impl Budget {
         let others = self.contributions.iter().filter(|c| !c.source.is_weighed());
         let mut list = vec![(weights.sqrt(), of_residuals)];
         list.extend(others.map(|c| (c.standard_uncertainty(j), c.degrees)));
-        self.estimable[j].then(|| effective_degrees_of_freedom(&list))
+        self.estimable[j].then(|| Degrees::effective(&list))
     }
 
     /// What each source costs the `parameters` considered, the costliest first: which one to improve, and what it

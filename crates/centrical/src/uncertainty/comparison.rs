@@ -67,30 +67,32 @@ impl Comparison {
 /// Coverage factor of the expanded uncertainties in `E_n` (ISO 13528, 9.7).
 const COVERAGE_FACTOR: f64 = 2.0;
 
-/// Compares the parameters that `a` and `b` both determine.
-pub fn compare(a: &Estimates, b: &Estimates) -> Comparison {
-    let place_in_b = |name: &String| b.names.iter().position(|other| other == name);
-    let shared: Vec<(usize, usize)> =
-        a.names.iter().enumerate().filter_map(|(i, name)| Some((i, place_in_b(name)?))).collect();
-    let covariance = DMatrix::from_fn(shared.len(), shared.len(), |m, n| {
-        let ((i, k), (j, l)) = (shared[m], shared[n]);
-        a.covariance[(i, j)] + b.covariance[(k, l)]
-    });
-    let differences: Vec<Difference> = shared
-        .iter()
-        .enumerate()
-        .map(|(n, &(i, k))| {
-            let (difference, standard_uncertainty) = (b.values[k] - a.values[i], covariance[(n, n)].sqrt());
-            let e_n = difference / (COVERAGE_FACTOR * standard_uncertainty);
-            let square = (difference / standard_uncertainty).powi(2);
-            let alone = if difference == 0.0 { 1.0 } else { chi_squared_tail(square, 1) };
-            let probability = (shared.len() as f64 * alone).min(1.0);
-            Difference { name: a.names[i].clone(), difference, standard_uncertainty, e_n, probability }
-        })
-        .collect();
-    let chi_squared = weighted_square(differences.iter().map(|d| d.difference), &covariance);
-    let probability = chi_squared.map(|chi_squared| chi_squared_tail(chi_squared, shared.len()));
-    Comparison { differences, chi_squared, probability }
+impl Estimates {
+    /// Compares the parameters that both determine: the `other` less these.
+    pub fn compare(&self, other: &Self) -> Comparison {
+        let place = |name: &String| other.names.iter().position(|there| there == name);
+        let shared: Vec<(usize, usize)> =
+            self.names.iter().enumerate().filter_map(|(i, name)| Some((i, place(name)?))).collect();
+        let covariance = DMatrix::from_fn(shared.len(), shared.len(), |m, n| {
+            let ((i, k), (j, l)) = (shared[m], shared[n]);
+            self.covariance[(i, j)] + other.covariance[(k, l)]
+        });
+        let differences: Vec<Difference> = shared
+            .iter()
+            .enumerate()
+            .map(|(n, &(i, k))| {
+                let (difference, standard_uncertainty) = (other.values[k] - self.values[i], covariance[(n, n)].sqrt());
+                let e_n = difference / (COVERAGE_FACTOR * standard_uncertainty);
+                let square = (difference / standard_uncertainty).powi(2);
+                let alone = if difference == 0.0 { 1.0 } else { chi_squared_tail(square, 1) };
+                let probability = (shared.len() as f64 * alone).min(1.0);
+                Difference { name: self.names[i].clone(), difference, standard_uncertainty, e_n, probability }
+            })
+            .collect();
+        let chi_squared = weighted_square(differences.iter().map(|d| d.difference), &covariance);
+        let probability = chi_squared.map(|chi_squared| chi_squared_tail(chi_squared, shared.len()));
+        Comparison { differences, chi_squared, probability }
+    }
 }
 
 /// `e^T C^-1 e`, by the Cholesky factor of the correlation matrix; `None` if `C` is not a covariance.

@@ -11,31 +11,33 @@ pub enum Degrees {
     Finite(f64),
 }
 
-/// Welch-Satterthwaite: `nu_eff = u_c^4 / sum u_i^4 / nu_i` over independent contributions `u_i` (GUM, G.2b).
-///
-/// Contributions are pairs of standard uncertainty and degrees of freedom. Valid for one output quantity whose inputs
-/// are independent and about normal; there is no such number for several parameters jointly.
-pub fn effective_degrees_of_freedom(contributions: &[(f64, Degrees)]) -> Degrees {
-    let variance: f64 = contributions.iter().map(|(u, _)| u * u).sum();
-    let doubt: f64 = contributions
-        .iter()
-        .map(|(u, degrees)| match degrees {
-            Degrees::Infinite => 0.0,
-            Degrees::Finite(nu) => u.powi(4) / nu,
-        })
-        .sum();
-    if doubt > 0.0 { Degrees::Finite(variance * variance / doubt) } else { Degrees::Infinite }
-}
+impl Degrees {
+    /// Welch-Satterthwaite: `nu_eff = u_c^4 / sum u_i^4 / nu_i` over independent contributions `u_i` (GUM, G.2b).
+    ///
+    /// Contributions are pairs of standard uncertainty and degrees of freedom. Valid for one output quantity whose inputs
+    /// are independent and about normal; there is no such number for several parameters jointly.
+    pub fn effective(contributions: &[(f64, Degrees)]) -> Degrees {
+        let variance: f64 = contributions.iter().map(|(u, _)| u * u).sum();
+        let doubt: f64 = contributions
+            .iter()
+            .map(|(u, degrees)| match degrees {
+                Degrees::Infinite => 0.0,
+                Degrees::Finite(nu) => u.powi(4) / nu,
+            })
+            .sum();
+        if doubt > 0.0 { Degrees::Finite(variance * variance / doubt) } else { Degrees::Infinite }
+    }
 
-/// Coverage factor `k = t_p(nu)`: the interval of `k` standard uncertainties on both sides covers with probability
-/// `coverage`, in (0, 1) (GUM, G.3.2 and table G.2). Degrees are used as they are, not truncated to an integer.
-pub fn coverage_factor(coverage: f64, degrees: Degrees) -> f64 {
-    let upper = 0.5 + 0.5 * coverage;
-    let z = || Normal::standard().inverse_cdf(upper);
-    match degrees {
-        Degrees::Finite(nu) if nu > MANY => nearly_normal(z(), nu),
-        Degrees::Finite(nu) => StudentsT::new(0.0, 1.0, nu).map_or(f64::NAN, |t| t.inverse_cdf(upper)),
-        Degrees::Infinite => z(),
+    /// Coverage factor `k = t_p(nu)`: the interval of `k` standard uncertainties on both sides covers with probability
+    /// `coverage`, in (0, 1) (GUM, G.3.2 and table G.2). Degrees are used as they are, not truncated to an integer.
+    pub fn coverage_factor(self, coverage: f64) -> f64 {
+        let upper = 0.5 + 0.5 * coverage;
+        let z = || Normal::standard().inverse_cdf(upper);
+        match self {
+            Degrees::Finite(nu) if nu > MANY => nearly_normal(z(), nu),
+            Degrees::Finite(nu) => StudentsT::new(0.0, 1.0, nu).map_or(f64::NAN, |t| t.inverse_cdf(upper)),
+            Degrees::Infinite => z(),
+        }
     }
 }
 

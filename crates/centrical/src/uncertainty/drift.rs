@@ -48,13 +48,15 @@ impl Slope {
     }
 }
 
-/// Relative slope of the speed over a plateau of a duration [s], and its standard uncertainty [1/s]: the speed may run from the middle to
-/// either end by its relative standard uncertainty, unless its `measured` slope says better (the posterior of both).
-pub fn slope_of_speed(uncertainty: f64, duration: f64, measured: Option<[f64; 2]>) -> [f64; 2] {
-    let stated = 2.0 * uncertainty / duration;
-    let Some([slope, u]) = measured.filter(|_| stated > 0.0) else { return [0.0, stated] };
-    let whole = stated.hypot(u);
-    [slope * (stated / whole).powi(2), stated * u / whole]
+impl Slope {
+    /// Relative slope of the speed over a plateau of a duration [s], and its standard uncertainty [1/s]: the speed may run from the middle to
+    /// either end by its relative standard uncertainty, unless its `measured` slope says better (the posterior of both).
+    pub fn of_speed(uncertainty: f64, duration: f64, measured: Option<[f64; 2]>) -> [f64; 2] {
+        let stated = 2.0 * uncertainty / duration;
+        let Some([slope, u]) = measured.filter(|_| stated > 0.0) else { return [0.0, stated] };
+        let whole = stated.hypot(u);
+        [slope * (stated / whole).powi(2), stated * u / whole]
+    }
 }
 
 /// The slopes of all plateaus together.
@@ -142,11 +144,11 @@ mod tests {
         let slope = Slope { slope: by_log_speed * 1e-6, standard_uncertainty: Vector3::repeat(1e-4), along: None };
         let left = |speed| PlateauDrift::of(&[slope.beyond_speed(&by_log_speed, speed)]).chi_squared;
         let [exact, stated, measured] = [(0.0, Some([1e-6, 1e-9])), (1e-5, None), (1e-5, Some([1e-6, 1e-9]))]
-            .map(|(u, m)| slope_of_speed(u, 10.0, m));
+            .map(|(u, m)| Slope::of_speed(u, 10.0, m));
         assert!(exact == [0.0, 0.0] && stated[0] == 0.0 && (stated[1] - 2e-6).abs() < 1e-18, "{stated:?}");
         assert!((left(exact) - 400.0).abs() < 1e-9 && (0.2..0.3).contains(&left(stated)) && left(measured) < 1e-6);
         // A poor measurement says no more than the statement.
-        let [slope, uncertainty] = slope_of_speed(1e-5, 10.0, Some([1e-3, 1.0]));
+        let [slope, uncertainty] = Slope::of_speed(1e-5, 10.0, Some([1e-3, 1.0]));
         assert!(slope < 1e-8 && (uncertainty - 2e-6).abs() < 1e-12);
     }
 }

@@ -9,7 +9,7 @@ use rayon::prelude::*;
 
 use super::budget::Budget;
 use super::comparison::weighted_square;
-use super::coverage::{Degrees, coverage_factor};
+use super::coverage::Degrees;
 use crate::fit::{Calibration, Data, Fit, Structure, Termination};
 use crate::model::whitening::noise_factor;
 use crate::model::{FitError, MeasurementModel, Observation, SetPoint};
@@ -85,33 +85,35 @@ pub struct WeightedSquare {
 /// Runs handed to the threads at a time: enough to keep any number busy, few enough for a smooth progress bar.
 const BATCH: usize = 256;
 
-/// Repeats the calibration of `data` for a unit with unknowns `truth`. The means of `data` are not used, only their weights.
-/// `progress` is called with the number of runs that were done.
-///
-/// # Errors
-/// [`FitError`] when numbers overflow or the caller stops.
-pub fn monte_carlo(
-    data: &Data,
-    truth: &[f64],
-    settings: &Settings,
-    progress: OnProgress<usize>,
-) -> Result<MonteCarlo, FitError> {
-    let laboratory = Laboratory::new(data, truth, settings)?;
-    let mut tally = Tally::new(&laboratory);
-    for first in (0..settings.runs).step_by(BATCH) {
-        let batch = first..settings.runs.min(first + BATCH);
-        let count = batch.len();
-        let run = |n: usize| {
-            advance(progress, 0)?;
-            laboratory.run(n)
-        };
-        let runs: Vec<Option<Run>> = batch.into_par_iter().map(run).collect::<Result<_, _>>()?;
-        for run in &runs {
-            tally.add(run.as_ref());
+impl MonteCarlo {
+    /// Repeats the calibration of `data` for a unit with unknowns `truth`. The means of `data` are not used, only their weights.
+    /// `progress` is called with the number of runs that were done.
+    ///
+    /// # Errors
+    /// [`FitError`] when numbers overflow or the caller stops.
+    pub fn of(
+        data: &Data,
+        truth: &[f64],
+        settings: &Settings,
+        progress: OnProgress<usize>,
+    ) -> Result<MonteCarlo, FitError> {
+        let laboratory = Laboratory::new(data, truth, settings)?;
+        let mut tally = Tally::new(&laboratory);
+        for first in (0..settings.runs).step_by(BATCH) {
+            let batch = first..settings.runs.min(first + BATCH);
+            let count = batch.len();
+            let run = |n: usize| {
+                advance(progress, 0)?;
+                laboratory.run(n)
+            };
+            let runs: Vec<Option<Run>> = batch.into_par_iter().map(run).collect::<Result<_, _>>()?;
+            for run in &runs {
+                tally.add(run.as_ref());
+            }
+            advance(progress, count)?;
         }
-        advance(progress, count)?;
+        Ok(tally.into_monte_carlo(&laboratory))
     }
-    Ok(tally.into_monte_carlo(&laboratory))
 }
 
 /// Everything that does not change from run to run.
@@ -157,7 +159,7 @@ impl<'a> Laboratory<'a> {
             determined,
             affected: (0..truth.len()).map(|j| budget.is_affected_by_null_space(fit, j)).collect(),
             budget,
-            coverage_factor: coverage_factor(settings.coverage, Degrees::Infinite),
+            coverage_factor: Degrees::Infinite.coverage_factor(settings.coverage),
             settings,
         })
     }

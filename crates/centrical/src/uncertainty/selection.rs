@@ -121,22 +121,37 @@ fn with_rivals(model: &MeasurementModel, rivals: Vec<Rival>) -> Candidate {
     Candidate { name: format!("{AS_STATED} + {}", names.join(" + ")), model: model.with_rivals(&rivals), rivals }
 }
 
-/// Compares the candidates beside `model`, and the model with pairs of the three rivals that lower BIC most.
-///
-/// # Errors
-/// [`FitError`] when an observation is invalid.
-pub fn select_beside(
-    model: &MeasurementModel,
-    observations: &[Observation],
-    progress: OnProgress<usize>,
-) -> Result<Selection, FitError> {
-    let single = candidates_of(model);
-    let data = data_of(&single, observations)?;
-    let mut fits = fits(&single, &data, progress)?;
-    let paired = pairs(model, &fits);
-    let data_of_pairs = data_of(&paired, observations)?;
-    fits.extend(self::fits(&paired, &data_of_pairs, progress)?);
-    conclude(&fits)
+impl Selection {
+    /// Compares the candidates beside `model`, and the model with pairs of the three rivals that lower BIC most.
+    ///
+    /// # Errors
+    /// [`FitError`] when an observation is invalid.
+    pub fn beside(
+        model: &MeasurementModel,
+        observations: &[Observation],
+        progress: OnProgress<usize>,
+    ) -> Result<Self, FitError> {
+        let single = candidates_of(model);
+        let data = data_of(&single, observations)?;
+        let mut fits = fits(&single, &data, progress)?;
+        let paired = pairs(model, &fits);
+        let data_of_pairs = data_of(&paired, observations)?;
+        fits.extend(self::fits(&paired, &data_of_pairs, progress)?);
+        conclude(&fits)
+    }
+
+    /// Fits all `candidates` to the same plateaus and compares them.
+    ///
+    /// # Errors
+    /// [`FitError`] when an observation is invalid, or without a candidate ([`FitError::Empty`]).
+    pub fn of(
+        candidates: &[Candidate],
+        observations: &[Observation],
+        progress: OnProgress<usize>,
+    ) -> Result<Self, FitError> {
+        let data = data_of(candidates, observations)?;
+        conclude(&fits(candidates, &data, progress)?)
+    }
 }
 
 /// Rivals that are tried in pairs.
@@ -158,19 +173,6 @@ fn pairs(model: &MeasurementModel, single: &[(&Candidate, Calibration)]) -> Vec<
         later.map(|(_, second)| with_rivals(model, vec![*first, *second])).collect::<Vec<_>>()
     };
     lower.iter().enumerate().flat_map(with_later).collect()
-}
-
-/// Fits all `candidates` to the same plateaus and compares them.
-///
-/// # Errors
-/// [`FitError`] when an observation is invalid, or without a candidate ([`FitError::Empty`]).
-pub fn select(
-    candidates: &[Candidate],
-    observations: &[Observation],
-    progress: OnProgress<usize>,
-) -> Result<Selection, FitError> {
-    let data = data_of(candidates, observations)?;
-    conclude(&fits(candidates, &data, progress)?)
 }
 
 /// The plateaus with the model of each candidate.

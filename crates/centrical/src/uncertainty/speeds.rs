@@ -10,7 +10,7 @@
 
 use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
 
-use super::coverage::{Degrees, effective_degrees_of_freedom};
+use super::coverage::Degrees;
 use super::verdict::Level;
 use crate::reduction::MeasuredSpeed;
 use crate::statistics::median;
@@ -72,26 +72,28 @@ pub struct SpeedContradiction {
 /// A plateau farther than this many standard uncertainties from the median takes no part in the common difference.
 const ALIKE: f64 = 5.0;
 
-/// The contradictions that are reported, family-wise at [`Level::Reported`].
-pub fn speed_contradictions(speeds: &[ShownSpeed], stated: &StatedSpeeds) -> Vec<SpeedContradiction> {
-    if speeds.is_empty() {
-        return Vec::new();
+impl StatedSpeeds {
+    /// The contradictions that are reported, family-wise at [`Level::Reported`].
+    pub fn contradictions(&self, speeds: &[ShownSpeed]) -> Vec<SpeedContradiction> {
+        if speeds.is_empty() {
+            return Vec::new();
+        }
+        let tested = Tested::new(speeds, self);
+        let mut found = Vec::new();
+        let common = tested.common();
+        if let Some(common) = &common {
+            found.push(common.clone());
+        }
+        let offset = common.as_ref().map(|common| common.difference);
+        let mut off: Vec<usize> =
+            (0..speeds.len()).filter(|n| Level::Reported.is_passed_by(tested.probability(*n, offset))).collect();
+        for extent in tested.extents(&off, offset.unwrap_or(0.0)) {
+            let group: Vec<usize> = off.iter().copied().filter(|n| tested.is_in(&extent, *n)).collect();
+            found.push(tested.contradiction(extent, &group, offset));
+            off.retain(|n| !group.contains(n));
+        }
+        found
     }
-    let tested = Tested::new(speeds, stated);
-    let mut found = Vec::new();
-    let common = tested.common();
-    if let Some(common) = &common {
-        found.push(common.clone());
-    }
-    let offset = common.as_ref().map(|common| common.difference);
-    let mut off: Vec<usize> =
-        (0..speeds.len()).filter(|n| Level::Reported.is_passed_by(tested.probability(*n, offset))).collect();
-    for extent in tested.extents(&off, offset.unwrap_or(0.0)) {
-        let group: Vec<usize> = off.iter().copied().filter(|n| tested.is_in(&extent, *n)).collect();
-        found.push(tested.contradiction(extent, &group, offset));
-        off.retain(|n| !group.contains(n));
-    }
-    found
 }
 
 struct Tested<'a> {
@@ -158,7 +160,7 @@ impl<'a> Tested<'a> {
         let shown = &self.speeds[n].shown;
         let scatter = (shown.uncertainty.powi(2) - shown.step_uncertainty.powi(2)).max(0.0).sqrt();
         let others = self.stated.plateau.hypot(scale).hypot(shown.step_uncertainty);
-        let degrees = effective_degrees_of_freedom(&[
+        let degrees = Degrees::effective(&[
             (others, Degrees::Infinite),
             (scatter, Degrees::Finite(shown.degrees_of_freedom as f64)),
         ]);

@@ -114,58 +114,62 @@ pub enum Objection<P, Q, R, S> {
     NotDetermined(Vec<String>),
 }
 
-/// The objections to a calibration; empty if it is acceptable.
-pub fn objections<P, Q, R, S>(findings: Findings<P, Q, R, S>) -> Vec<Objection<P, Q, R, S>> {
-    let Findings {
-        termination,
-        iterations,
-        chi_squared,
-        degrees_of_freedom,
-        of_strongest_noise,
-        outlying,
-        rivals,
-        patterns,
-        speeds,
-        slopes,
-        creep,
-        not_determined,
-    } = findings;
-    let is_beyond = |probability: f64| Level::Objection.is_passed_by(probability);
-    let mut objections = Vec::new();
-    match termination {
-        Termination::Stalled | Termination::IterationLimit => {
-            objections.push(Objection::NotConverged { termination, iterations });
+impl<P, Q, R, S> Findings<P, Q, R, S> {
+    /// The objections to a calibration; empty if it is acceptable.
+    pub fn objections(self) -> Vec<Objection<P, Q, R, S>> {
+        let Findings {
+            termination,
+            iterations,
+            chi_squared,
+            degrees_of_freedom,
+            of_strongest_noise,
+            outlying,
+            rivals,
+            patterns,
+            speeds,
+            slopes,
+            creep,
+            not_determined,
+        } = self;
+        let is_beyond = |probability: f64| Level::Objection.is_passed_by(probability);
+        let mut objections = Vec::new();
+        match termination {
+            Termination::Stalled | Termination::IterationLimit => {
+                objections.push(Objection::NotConverged { termination, iterations });
+            }
+            Termination::Linear | Termination::Converged => {}
         }
-        Termination::Linear | Termination::Converged => {}
-    }
-    if rivals.iter().any(|(_, probability)| is_beyond(*probability)) {
-        objections.push(Objection::LeftOut(rivals.into_iter().map(|(rival, _)| rival).collect()));
-    }
-    let chance = chance_of_residuals(chi_squared, degrees_of_freedom, of_strongest_noise);
-    if is_beyond(chance) {
-        objections.push(Objection::Residuals { chi_squared, degrees_of_freedom, chance });
-    }
-    let (plateaus, chances): (Vec<P>, Vec<f64>) = outlying.into_iter().filter(|(_, chance)| is_beyond(*chance)).unzip();
-    objections.extend(chances.first().map(|first| Objection::Outlying(plateaus, *first)));
-    let patterns: Vec<Q> = patterns.into_iter().filter(|(_, p)| is_beyond(*p)).map(|(pattern, _)| pattern).collect();
-    if !patterns.is_empty() {
-        objections.push(Objection::Patterns(patterns));
-    }
-    let speeds: Vec<S> = speeds.into_iter().filter(|(_, p)| is_beyond(*p)).map(|(speed, _)| speed).collect();
-    if !speeds.is_empty() {
-        objections.push(Objection::Speeds(speeds));
-    }
-    if let Some((chi_squared, degrees_of_freedom)) = slopes {
-        let chance = chi_squared_tail(chi_squared / SLOW_NOISE, degrees_of_freedom);
+        if rivals.iter().any(|(_, probability)| is_beyond(*probability)) {
+            objections.push(Objection::LeftOut(rivals.into_iter().map(|(rival, _)| rival).collect()));
+        }
+        let chance = chance_of_residuals(chi_squared, degrees_of_freedom, of_strongest_noise);
         if is_beyond(chance) {
-            objections.push(Objection::Drift { chi_squared, degrees_of_freedom, chance });
+            objections.push(Objection::Residuals { chi_squared, degrees_of_freedom, chance });
         }
+        let (plateaus, chances): (Vec<P>, Vec<f64>) =
+            outlying.into_iter().filter(|(_, chance)| is_beyond(*chance)).unzip();
+        objections.extend(chances.first().map(|first| Objection::Outlying(plateaus, *first)));
+        let patterns: Vec<Q> =
+            patterns.into_iter().filter(|(_, p)| is_beyond(*p)).map(|(pattern, _)| pattern).collect();
+        if !patterns.is_empty() {
+            objections.push(Objection::Patterns(patterns));
+        }
+        let speeds: Vec<S> = speeds.into_iter().filter(|(_, p)| is_beyond(*p)).map(|(speed, _)| speed).collect();
+        if !speeds.is_empty() {
+            objections.push(Objection::Speeds(speeds));
+        }
+        if let Some((chi_squared, degrees_of_freedom)) = slopes {
+            let chance = chi_squared_tail(chi_squared / SLOW_NOISE, degrees_of_freedom);
+            if is_beyond(chance) {
+                objections.push(Objection::Drift { chi_squared, degrees_of_freedom, chance });
+            }
+        }
+        objections.extend(creep.filter(|chance| is_beyond(*chance)).map(Objection::Creep));
+        if !not_determined.is_empty() {
+            objections.push(Objection::NotDetermined(not_determined));
+        }
+        objections
     }
-    objections.extend(creep.filter(|chance| is_beyond(*chance)).map(Objection::Creep));
-    if !not_determined.is_empty() {
-        objections.push(Objection::NotDetermined(not_determined));
-    }
-    objections
 }
 
 /// Probability of a chi^2 as large by chance. Unknown noise is at most as strong as that by which chi^2 is `of_strongest_noise`,
@@ -180,7 +184,7 @@ mod tests {
     use super::*;
 
     fn with_slopes(slopes: (f64, usize)) -> Vec<Objection<(), (), (), ()>> {
-        objections(Findings {
+        Findings {
             termination: Termination::Converged,
             iterations: 3,
             chi_squared: 275.0,
@@ -193,7 +197,8 @@ mod tests {
             slopes: Some(slopes),
             creep: None,
             not_determined: Vec::new(),
-        })
+        }
+        .objections()
     }
 
     /// Slow noise that doubles the variance of slopes is not drift; a slope beyond it is.

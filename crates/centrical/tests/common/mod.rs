@@ -5,8 +5,8 @@ pub mod random;
 #[path = "../../examples/rank_table.rs"]
 pub mod rank_table;
 
+use centrical::ThirdPosition;
 use centrical::plan::Normalised;
-use centrical::position::ThirdPosition;
 use centrical::{
     Calibration, Data, ErrorModel, Experiment, Extension, Fit, FitError, LeastSquares, MeasurementModel, Observation,
     PairRelation,

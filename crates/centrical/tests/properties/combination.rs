@@ -1,4 +1,4 @@
-use centrical::position::ThirdPosition::AxisOneUp;
+use centrical::ThirdPosition::AxisOneUp;
 use centrical::{Combination, ErrorModel, Extra, MeasurementModel, PairRelation, Parameters};
 
 use crate::common::{Random, experiment};

@@ -1,5 +1,5 @@
 use centrical::ErrorModel;
-use centrical::uncertainty::{Compensated, Estimates, chi_squared_tail, compare};
+use centrical::uncertainty::{Compensated, Estimates, chi_squared_tail};
 use centrical_compensate::gain;
 use nalgebra::{DMatrix, Matrix3, Vector3};
 
@@ -26,7 +26,7 @@ fn unchanged_units_agree_and_changes_show() {
     let x = truth(&model, 1.0, &mut random);
     let (mut sum, mut beyond, mut disagree, mut pairs_beyond) = (0.0, 0, 0, 0);
     for _ in 0..PAIRS {
-        let comparison = compare(&calibrate(&x, &mut random), &calibrate(&x, &mut random));
+        let comparison = calibrate(&x, &mut random).compare(&calibrate(&x, &mut random));
         assert_eq!(comparison.differences.len(), 21);
         sum += comparison.chi_squared.unwrap();
         let beyond_of_pair = comparison.differences.iter().filter(|d| d.e_n.abs() > 1.0).count();
@@ -43,7 +43,7 @@ fn unchanged_units_agree_and_changes_show() {
     let before = calibrate(&x, &mut random);
     let mut moved = x.clone();
     moved[28] += 8.0 * (2.0 * before.covariance[(0, 0)]).sqrt();
-    let comparison = compare(&before, &calibrate(&moved, &mut random));
+    let comparison = before.compare(&calibrate(&moved, &mut random));
     assert!(comparison.differences[0].e_n > 1.0 && comparison.differences[0].is_real() && !comparison.agrees());
     assert!(comparison.probability.unwrap() < 1e-4);
 }
@@ -56,7 +56,7 @@ fn only_what_both_have_is_compared() {
         values: values.to_vec(),
         covariance: DMatrix::identity(names.len(), names.len()),
     };
-    let comparison = compare(&of(&["a", "b", "c"], &[1.0, 2.0, 3.0]), &of(&["c", "a"], &[5.0, 1.0]));
+    let comparison = of(&["a", "b", "c"], &[1.0, 2.0, 3.0]).compare(&of(&["c", "a"], &[5.0, 1.0]));
     let found: Vec<(&str, f64)> = comparison.differences.iter().map(|d| (d.name.as_str(), d.difference)).collect();
     assert_eq!(found, [("a", 0.0), ("c", 2.0)]);
     assert!((comparison.differences[1].e_n - 0.5 * 2.0_f64.sqrt()).abs() < 1e-15);
@@ -69,11 +69,11 @@ fn only_what_both_have_is_compared() {
 #[test]
 fn a_calibration_agrees_with_itself() {
     let own = calibrate(&truth(&source_model(), 1.0, &mut Random::new(32)), &mut Random::new(34));
-    let comparison = compare(&own, &own);
+    let comparison = own.compare(&own);
     assert_eq!((comparison.chi_squared, comparison.probability), (Some(0.0), Some(1.0)));
     assert!(comparison.agrees() && comparison.differences.iter().all(|d| d.probability == 1.0));
     let nothing = Estimates { names: Vec::new(), values: Vec::new(), covariance: DMatrix::zeros(0, 0) };
-    assert!(!compare(&own, &nothing).agrees(), "nothing in common");
+    assert!(!own.compare(&nothing).agrees(), "nothing in common");
     for (chi_squared, probability) in [(0.0, 1.0), (-1e-9, 1.0), (f64::INFINITY, 0.0), (f64::NAN, 0.0)] {
         assert_eq!(chi_squared_tail(chi_squared, 21), probability);
     }

@@ -1,10 +1,10 @@
 //! From records to parameters: the whole chain is right to its own statement.
 
+use centrical::ThirdPosition;
 use centrical::plan::Normalised;
-use centrical::position::ThirdPosition;
 use centrical::reduction::{NoiseModel, PlateauMean, Record, ReducedMounting, ScheduledPlateau};
-use centrical::simulate::{Coloured, Equipment, Losses, Machine, Recorder, Sensor, Simulation, Spikes, draw_truth};
-use centrical::{Fit, MeasurementModel, Observation, PairRelation, linear};
+use centrical::simulate::{Coloured, Equipment, Losses, Machine, Recorder, Sensor, Simulation, Spikes};
+use centrical::{Fit, MeasurementModel, Observation, PairRelation};
 use nalgebra::{DVector, Matrix3};
 
 use crate::common::kozlov;
@@ -79,9 +79,8 @@ fn means(model: &MeasurementModel, truth: &[f64], seed: u64) -> Vec<PlateauMean>
     let reduced: Vec<ReducedMounting> = (0..experiment.mountings.len())
         .map(|m| {
             let of_mounting = experiment.set_points.iter().filter(|s| s.mounting == m);
-            let schedule: Vec<ScheduledPlateau> = of_mounting
-                .map(|s| ScheduledPlateau { omega: s.omega, nominal_z: linear::nominal(experiment, s) })
-                .collect();
+            let schedule: Vec<ScheduledPlateau> =
+                of_mounting.map(|s| ScheduledPlateau { omega: s.omega, nominal_z: experiment.nominal(s) }).collect();
             record(&simulation, m).reduce(None, &schedule).unwrap_or_else(|e| panic!("session {seed}, {m}: {e}"))
         })
         .collect();
@@ -127,7 +126,7 @@ fn the_error_of_all_parameters_is_as_stated() {
     assert_eq!(n, 49);
     let (mut stated, mut without_colour, mut residuals) = (0.0, 0.0, 0.0);
     for seed in 0..SESSIONS {
-        let truth = draw_truth(&model, 1.0, seed);
+        let truth = Simulation::draw_truth(&model, 1.0, seed);
         let means = means(&model, &truth, seed);
         let fit = calibrated(&model, &means, |mean| mean.covariance);
         let square = weighted_square(&fit, &truth);

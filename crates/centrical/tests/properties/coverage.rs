@@ -2,7 +2,7 @@
 
 use centrical::PairRelation;
 use centrical::TypeB;
-use centrical::uncertainty::{Degrees, coverage_factor};
+use centrical::uncertainty::Degrees;
 use centrical::uncertainty::{Method, MonteCarlo};
 
 use crate::uncertainty::{Case, STATED};
@@ -86,9 +86,9 @@ fn intervals_cover_over_four_times_ten_thousand_runs() {
 #[test]
 fn coverage_factors_of_very_many_degrees() {
     for coverage in [0.5, 0.6827, 0.95, 0.9973] {
-        let normal = coverage_factor(coverage, Degrees::Infinite);
+        let normal = Degrees::Infinite.coverage_factor(coverage);
         let factors =
-            (0..400).map(|n| coverage_factor(coverage, Degrees::Finite(10_f64.powf(2.5 + 0.05 * f64::from(n)))));
+            (0..400).map(|n| Degrees::Finite(10_f64.powf(2.5 + 0.05 * f64::from(n))).coverage_factor(coverage));
         let factors: Vec<f64> = factors.collect();
         // The expansion from 1e3 degrees on and the iteration below have eight digits.
         assert!(factors.windows(2).all(|pair| pair[0] >= pair[1] - 1e-7), "{factors:?}");

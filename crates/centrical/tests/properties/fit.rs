@@ -1,4 +1,4 @@
-use centrical::position::ThirdPosition::{AxisOneDown, AxisOneUp};
+use centrical::ThirdPosition::{AxisOneDown, AxisOneUp};
 use centrical::{Calibration, Data, FitError, PairRelation, STANDARD_GRAVITY, Termination};
 
 use crate::common::{Random, experiment, kozlov, observations, truth};

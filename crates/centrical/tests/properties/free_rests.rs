@@ -1,8 +1,8 @@
 //! Rests in attitudes that only gravity shows: the model, what they determine, and what they add to a centrifuge session.
 
+use centrical::ThirdPosition::AxisOneUp;
 use centrical::fit::Follower;
 use centrical::observability::Addition;
-use centrical::position::ThirdPosition::AxisOneUp;
 use centrical::uncertainty::{Level, RivalTest, Rivals};
 use centrical::{
     Calibration, Combination, Data, ErrorModel, Experiment, Fit, Kind, MeasurementModel, Mounting, Observation,

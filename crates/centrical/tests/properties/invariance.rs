@@ -3,8 +3,8 @@
 
 use std::collections::BTreeMap;
 
+use centrical::ThirdPosition::AxisOneDown;
 use centrical::plan::Normalised;
-use centrical::position::ThirdPosition::AxisOneDown;
 use centrical::{ErrorModel, Experiment, MeasurementModel, PairRelation, Study, Weight};
 use nalgebra::{Matrix3, Vector3};
 

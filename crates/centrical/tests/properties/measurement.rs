@@ -1,4 +1,4 @@
-use centrical::position::ThirdPosition::{AxisOneDown, AxisOneUp};
+use centrical::ThirdPosition::{AxisOneDown, AxisOneUp};
 use centrical::{Experiment, Group, Linearisation, MeasurementModel, Monomial, PairRelation, ReferencePoint, SetPoint};
 use nalgebra::{DMatrix, Vector3};
 

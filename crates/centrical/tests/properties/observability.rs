@@ -3,8 +3,8 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use centrical::observability::{Addition, STRONG_CORRELATION};
-use centrical::position::Position;
+use centrical::Position;
+use centrical::observability::{Addition, CorrelatedGroup};
 use centrical::{
     Centrifuge, Combination, ErrorModel, Experiment, Extension, Extra, History, Law, MeasurementModel, Mounting,
     PairRelation, ReferencePoint, SetPoint, Site, Study, Unit, Weight, rotation,
@@ -149,7 +149,7 @@ fn estimable_means_nothing_else_makes_up_for_it() {
             let group = groups.iter().find(|group| group.parameters.contains(&j));
             if let Some((group, n)) = group.and_then(|g| Some((g, g.parameters.iter().position(|&k| k == j)?))) {
                 let multiple = group.multiple_correlations[n];
-                assert!(multiple >= STRONG_CORRELATION);
+                assert!(multiple >= CorrelatedGroup::STRONG);
                 assert!((multiple * multiple + distance * distance - 1.0).abs() < 1e-9, "{name}");
                 correlated += 1;
             }

@@ -1,15 +1,15 @@
 use centrical::plan::{
-    Candidates, Costs, Criterion, Effort, Goal, NextPlateau, Noise, Plan, PlanError, Rationale, ReadingRange,
-    Robustness, Scenario, Schedule, Visit, best_for_time, predict, shortest_for_goals,
+    Candidates, Costs, Criterion, Effort, Goal, NextPlateau, Noise, Plan, PlanError, Prediction, Rationale,
+    ReadingRange, Robustness, Scenario, Schedule, Visit,
 };
-use centrical::position::{Position, ThirdPosition, kozlov_2017};
 use centrical::reduction::{NoiseModel, Record, ScheduledPlateau};
 use centrical::simulate::{Machine, Recorder, Sensor, Simulation};
-use centrical::uncertainty::{Compensated, Method, Settings, monte_carlo};
+use centrical::uncertainty::{Compensated, Method, MonteCarlo, Settings};
 use centrical::{
     Centrifuge, Data, ErrorModel, Experiment, Extension, Law, MeasurementModel, Monomial, Mounting, NULL_HOLD,
-    Observation, PairRelation, ReferencePoint, SetPoint, Site, Term, Unit, Weight, linear, unwatched,
+    Observation, PairRelation, ReferencePoint, SetPoint, Site, Term, Unit, Weight, unwatched,
 };
+use centrical::{Position, ThirdPosition};
 use nalgebra::{DMatrix, Matrix3, Vector3};
 
 use crate::common::{Random, spread, truth};
@@ -23,7 +23,7 @@ pub fn scenario(model: MeasurementModel, noise: Noise) -> Scenario {
 
 /// A few plateaus of one to three mountings, a unit of four to six coefficients, costs and durations by chance.
 fn small(random: &mut Random) -> Candidates {
-    let positions = kozlov_2017(ThirdPosition::AxisOneUp);
+    let positions = Position::kozlov_2017(ThirdPosition::AxisOneUp);
     let count = 1 + random.below(3);
     let mountings: Vec<Mounting> = (0..count)
         .map(|m| Mounting { position: m / 2, arm_y: Vector3::x() * (0.2 + 0.5 * random.uniform()) })
@@ -256,7 +256,7 @@ fn rests_beside_the_arm_are_visited_once() {
         };
         let time = 0.5 * candidates.time_of(&visits_of_all(&candidates));
         let criterion = criterion(case % 4, &candidates.scenarios[0].model);
-        let Ok(plan) = best_for_time(&candidates, &criterion, time, Effort::FAIR, &unwatched) else { continue };
+        let Ok(plan) = candidates.best_for_time(&criterion, time, Effort::FAIR, &unwatched) else { continue };
         let mut chosen: Vec<usize> = plan.schedule.visits.iter().filter(is_rest).map(|v| v.candidate).collect();
         rests += chosen.len();
         let count = chosen.len();
@@ -284,11 +284,11 @@ fn rests_precede_no_mounting() {
     let mut experiment = model.experiment().clone();
     experiment.positions[0] = Position::free("r", &Vector3::x());
     experiment.mountings.push(Mounting { position: experiment.positions.len(), arm_y: Vector3::x() });
-    experiment.positions.push(kozlov_2017(ThirdPosition::AxisOneUp)[5].clone());
+    experiment.positions.push(Position::kozlov_2017(ThirdPosition::AxisOneUp)[5].clone());
     let model = MeasurementModel::new(experiment, model.error_model().clone(), &[]);
     let noise = candidates.scenarios[0].noise;
     let wrong = Candidates { scenarios: vec![scenario(model, noise)], ..candidates };
-    let refused = best_for_time(&wrong, &Criterion::Determinant, 1e5, Effort::QUICK, &unwatched);
+    let refused = wrong.best_for_time(&Criterion::Determinant, 1e5, Effort::QUICK, &unwatched);
     assert_eq!(refused.unwrap_err(), PlanError::RestsFirst);
 }
 
@@ -332,14 +332,14 @@ fn enumerated_and_found(
         if best.1.is_empty() {
             continue;
         }
-        let plan = best_for_time(&candidates, &criterion, time, Effort::CERTIFIED, &unwatched).unwrap();
+        let plan = candidates.best_for_time(&criterion, time, Effort::CERTIFIED, &unwatched).unwrap();
         let found = value(&criterion, &candidates, &plan.schedule.visits);
         assert!((plan.criterion / found - 1.0).abs() < 1e-6, "case {case}: {} {found}", plan.criterion);
         assert!(plan.schedule.time <= time * (1.0 + 1e-12), "case {case}");
         // However early the search ends, no schedule is below its bound.
         let ends = [1, 2, 3, 5, 9].map(|nodes| Effort { nodes, ..Effort::QUICK });
         for effort in ends.into_iter().chain([Effort::CERTIFIED]) {
-            let early = best_for_time(&candidates, &criterion, time, effort, &unwatched).unwrap();
+            let early = candidates.best_for_time(&criterion, time, effort, &unwatched).unwrap();
             assert!(early.bound <= best.0 * (1.0 + 1e-9), "case {case}, {effort:?}: {:e} {:e}", early.bound, best.0);
             assert!(early.bound > 0.0 && early.criterion >= best.0 * (1.0 - 1e-6), "case {case}, {effort:?}");
         }
@@ -371,7 +371,7 @@ fn another_plateau_lies_between_two_visits_of_one() {
         let all: Vec<Visit> =
             (0..candidates.len()).map(|c| Visit { candidate: c, duration: candidates.durations[1] }).collect();
         let time = candidates.time_of(&all) * (0.5 + 4.0 * random.uniform());
-        let Ok(plan) = best_for_time(&candidates, &criterion, time, Effort::QUICK, &unwatched) else { continue };
+        let Ok(plan) = candidates.best_for_time(&criterion, time, Effort::QUICK, &unwatched) else { continue };
         assert!(schedule_is_sorted(&plan.schedule, &candidates), "case {case}: {:?}", plan.schedule.visits);
         assert!(plan.schedule.time <= time * (1.0 + 1e-12), "case {case}");
         let found = value(&criterion, &candidates, &plan.schedule.visits);
@@ -383,7 +383,7 @@ fn another_plateau_lies_between_two_visits_of_one() {
             uncertainty: 0.7 * value(&Criterion::Reading(RANGE), &candidates, &all).sqrt(),
         };
         let goals = Criterion::Worst(vec![goal]);
-        if let Ok(shortest) = shortest_for_goals(&candidates, &goals, 0.01, Effort::QUICK, &unwatched) {
+        if let Ok(shortest) = candidates.shortest_for_goals(&goals, 0.01, Effort::QUICK, &unwatched) {
             assert!(schedule_is_sorted(&shortest.schedule, &candidates), "case {case}: {:?}", shortest.schedule.visits);
         }
     }
@@ -427,8 +427,7 @@ fn large_plans_are_certified() {
     for (number, time) in [(2, 4.0), (2, 6.0), (0, 8.0), (1, 8.0), (3, 8.0)] {
         let candidates = large(8, &[30.0, 60.0, 120.0]);
         let criterion = criterion(number, &candidates.scenarios[0].model);
-        let plan =
-            best_for_time(&candidates, &criterion, time * 3600.0, Effort::usual(&candidates), &unwatched).unwrap();
+        let plan = candidates.best_for_time(&criterion, time * 3600.0, Effort::usual(&candidates), &unwatched).unwrap();
         assert!(schedule_is_sorted(&plan.schedule, &candidates));
         // The continuous design within 0.2 % of the optimum; the schedule, where there is more time to fill than set-ups take,
         // within 0.2 % of it; and of the best on any mountings within 1 % of the uncertainty.
@@ -447,7 +446,7 @@ fn plans_of_many_loads_are_certified() {
     assert!(many.len() > 1000 && few.len() < 1000);
     let plan = |candidates: &Candidates| {
         let criterion = criterion(2, &candidates.scenarios[0].model);
-        best_for_time(candidates, &criterion, 8.0 * 3600.0, Effort::usual(candidates), &unwatched).unwrap()
+        candidates.best_for_time(&criterion, 8.0 * 3600.0, Effort::usual(candidates), &unwatched).unwrap()
     };
     let [of_few, of_many] = [&few, &many].map(plan);
     println!("gaps {:.2e}, {:.2e}", of_few.gap(), of_many.gap());
@@ -461,7 +460,7 @@ fn plans_of_many_loads_are_certified() {
 fn planned() -> (Candidates, Schedule) {
     let candidates = large(5, &[20.0, 40.0]);
     let criterion = Criterion::Reading(ReadingRange { force: 200.0 * 9.80665 });
-    let plan = best_for_time(&candidates, &criterion, 5.5 * 3600.0, Effort::QUICK, &unwatched).unwrap();
+    let plan = candidates.best_for_time(&criterion, 5.5 * 3600.0, Effort::QUICK, &unwatched).unwrap();
     (candidates, plan.schedule)
 }
 
@@ -475,7 +474,7 @@ fn predictions_are_what_monte_carlo_shows() {
     let scenario = &candidates.scenarios[0];
     let model = scenario.model.in_experiment(experiment).with_stated(STATED);
     let zero = vec![0.0; model.parameters().len()];
-    let prediction = predict(&model, &weights, &zero).unwrap();
+    let prediction = Prediction::of(&model, &weights, &zero).unwrap();
     let observations: Vec<Observation> = weights
         .iter()
         .map(|w| Observation {
@@ -486,7 +485,7 @@ fn predictions_are_what_monte_carlo_shows() {
         .collect();
     let settings = Settings { runs: RUNS, seed: 3, coverage: 0.95, method: Method::Exact };
     let data = Data::new(&model, observations).unwrap();
-    let shown = monte_carlo(&data, &zero, &settings, &unwatched).unwrap();
+    let shown = MonteCarlo::of(&data, &zero, &settings, &unwatched).unwrap();
     let mut ratios = Vec::new();
     for (j, statistics) in shown.parameters.iter().enumerate() {
         let (Some(statistics), Some(u)) = (statistics, prediction.budget().standard_uncertainty(j)) else { continue };
@@ -525,7 +524,7 @@ fn predictions_are_the_scatter_of_simulated_sessions() {
     let noise = Noise { density: 20e-6 * 9.80665, floor: 0.0 };
     let weights: Vec<Weight> = (0..model.experiment().set_points.len()).map(|n| noise.weight(n, 40.0)).collect();
     let truth = truth(&model, 1.0, &mut Random::new(100));
-    let prediction = predict(&model, &weights, &truth).unwrap();
+    let prediction = Prediction::of(&model, &weights, &truth).unwrap();
     let p = model.parameters().len();
     let scale = nalgebra::DVector::from_fn(p, |j, _| prediction.budget().standard_uncertainty(j).unwrap());
     let correlation = DMatrix::from_fn(p, p, |i, j| prediction.budget().correlation(i, j).unwrap());
@@ -571,8 +570,7 @@ fn calibration_means(
                 whole
             });
             let there = experiment.set_points.iter().filter(|s| s.mounting == m);
-            let scheduled =
-                |s: &SetPoint| ScheduledPlateau { omega: s.omega, nominal_z: linear::nominal(experiment, s) };
+            let scheduled = |s: &SetPoint| ScheduledPlateau { omega: s.omega, nominal_z: experiment.nominal(s) };
             record.reduce(None, &there.map(scheduled).collect::<Vec<_>>()).unwrap()
         })
         .collect();
@@ -593,7 +591,7 @@ fn reading_criterion_is_the_mean_over_forces() {
     let (experiment, weights) = candidates.experiment_of(&schedule);
     let model = candidates.scenarios[0].model.in_experiment(experiment);
     let zero = vec![0.0; model.parameters().len()];
-    let prediction = predict(&model, &weights, &zero).unwrap();
+    let prediction = Prediction::of(&model, &weights, &zero).unwrap();
     let [_, cubature] = prediction.reading(RANGE).unwrap();
     let first = model.parameters().find("df_1").unwrap();
     let covariance = DMatrix::from_fn(21, 21, |i, j| prediction.budget().covariance(first + i, first + j).unwrap());
@@ -618,7 +616,7 @@ fn reading_criterion_is_the_mean_over_forces() {
 fn shortest_plans_keep_their_goals() {
     let candidates = large(5, &[30.0, 120.0]);
     let of_reading = Criterion::Reading(ReadingRange { force: 200.0 * 9.80665 });
-    let known = best_for_time(&candidates, &of_reading, 6.0 * 3600.0, Effort::QUICK, &unwatched).unwrap();
+    let known = candidates.best_for_time(&of_reading, 6.0 * 3600.0, Effort::QUICK, &unwatched).unwrap();
     let goal = |factor: f64| {
         Criterion::Worst(vec![Goal::Reading {
             range: ReadingRange { force: 200.0 * 9.80665 },
@@ -626,11 +624,11 @@ fn shortest_plans_keep_their_goals() {
         }])
     };
     // What six hours reach is reached in six hours, and no less by more than the search's resolution and gaps.
-    let shortest = shortest_for_goals(&candidates, &goal(1.0), 0.01, Effort::QUICK, &unwatched).unwrap();
+    let shortest = candidates.shortest_for_goals(&goal(1.0), 0.01, Effort::QUICK, &unwatched).unwrap();
     assert!(shortest.criterion <= 1.0, "{}", shortest.criterion);
     let hours = shortest.schedule.time / 3600.0;
     assert!(hours < 6.0 * 1.02 && hours > 5.0, "{hours} h");
-    let error = shortest_for_goals(&candidates, &goal(0.1), 0.01, Effort::QUICK, &unwatched).unwrap_err();
+    let error = candidates.shortest_for_goals(&goal(0.1), 0.01, Effort::QUICK, &unwatched).unwrap_err();
     assert!(matches!(error, PlanError::OutOfReach { factor } if factor > 1.0), "{error}");
 }
 
@@ -647,7 +645,7 @@ fn least_times_for_goals_are_below_all_that_keep_them() {
         let reached = value(&Criterion::Reading(RANGE), &candidates, &everything).sqrt();
         let uncertainty = reached * (1.02 + random.uniform());
         let goal = Criterion::Worst(vec![Goal::Reading { range: RANGE, uncertainty }]);
-        let plan = shortest_for_goals(&candidates, &goal, 0.01, Effort::CERTIFIED, &unwatched).unwrap();
+        let plan = candidates.shortest_for_goals(&goal, 0.01, Effort::CERTIFIED, &unwatched).unwrap();
         let mut shortest = f64::INFINITY;
         enumerated(&candidates, plan.schedule.time, &mut |visits| {
             let time = candidates.time_of(visits);
@@ -675,10 +673,10 @@ fn least_times_for_goals_are_below_all_that_keep_them() {
 fn plans_of_little_time_see_what_they_are_to_see() {
     let candidates = large(8, &[30.0, 60.0]);
     let criterion = Criterion::Reading(RANGE);
-    let plan = best_for_time(&candidates, &criterion, 2.4 * 3600.0, Effort::usual(&candidates), &unwatched).unwrap();
+    let plan = candidates.best_for_time(&criterion, 2.4 * 3600.0, Effort::usual(&candidates), &unwatched).unwrap();
     println!("{:.2e} {:.2e}, {} nodes", plan.gap(), plan.rounding(), plan.nodes);
     assert!((1.0 + plan.gap()).sqrt() < 1.1, "{}", plan.gap());
-    let more = best_for_time(&candidates, &criterion, 2.6 * 3600.0, Effort::usual(&candidates), &unwatched).unwrap();
+    let more = candidates.best_for_time(&criterion, 2.6 * 3600.0, Effort::usual(&candidates), &unwatched).unwrap();
     assert!(more.criterion < plan.criterion && more.bound < plan.bound);
 }
 
@@ -698,7 +696,7 @@ fn next_best_is_the_best() {
     let benefits = next.benefits(rest).unwrap();
     assert_eq!(benefits.len(), 6);
     let zero = vec![0.0; model.parameters().len()];
-    let reading = |weights: &[Weight]| predict(model, weights, &zero).unwrap().reading(RANGE).unwrap()[1];
+    let reading = |weights: &[Weight]| Prediction::of(model, weights, &zero).unwrap().reading(RANGE).unwrap()[1];
     let before = reading(taken);
     for pair in benefits.windows(2) {
         assert!(pair[0].factor <= pair[1].factor);
@@ -738,7 +736,7 @@ fn no_usual_plan_is_below_the_bound() {
     let mut compared = 0;
     for hours in [3.4, 4.0, 5.5, 7.0] {
         let time = hours * 3600.0;
-        let plan = best_for_time(&candidates, &criterion, time, Effort::usual(&candidates), &unwatched).unwrap();
+        let plan = candidates.best_for_time(&criterion, time, Effort::usual(&candidates), &unwatched).unwrap();
         let Some((schedule, uniform)) = candidates.uniform(&criterion, time).unwrap() else { continue };
         assert!(schedule.time <= time, "{hours} h: {}", schedule.time);
         assert!(schedule.visits.iter().all(|visit| candidates.durations.contains(&visit.duration)));

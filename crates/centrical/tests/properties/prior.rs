@@ -1,6 +1,6 @@
 //! Priors are rows like any other, and what rests on them is said.
 
-use centrical::position::ThirdPosition::AxisOneUp;
+use centrical::ThirdPosition::AxisOneUp;
 use centrical::{
     Combination, ErrorModel, Extension, Extra, Law, MeasurementModel, PairRelation, PriorError, Study, Weight,
 };

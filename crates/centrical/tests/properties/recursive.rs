@@ -2,9 +2,9 @@
 
 use std::collections::HashSet;
 
+use centrical::ThirdPosition::{AxisOneDown, AxisOneUp};
 use centrical::fit::filter::{Filter, Lifetimes, Readings};
 use centrical::fit::{Follower, Innovation};
-use centrical::position::ThirdPosition::{AxisOneDown, AxisOneUp};
 use centrical::{
     Calibration, Data, ErrorModel, Experiment, Extension, Extra, Fit, FitError, Group, Law, MeasurementModel,
     Observation, PairRelation, STANDARD_GRAVITY, Termination, rotation,

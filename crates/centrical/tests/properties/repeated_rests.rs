@@ -1,8 +1,8 @@
 //! Calibrations with rests in attitudes of their own, repeated: each run draws the attitudes, the change of the bias and gravity anew.
 
+use centrical::ThirdPosition::AxisOneUp;
 use centrical::observability::cube_directions;
-use centrical::position::ThirdPosition::AxisOneUp;
-use centrical::uncertainty::{Method, MonteCarlo, Settings, monte_carlo};
+use centrical::uncertainty::{Method, MonteCarlo, Settings};
 use centrical::{
     Data, Effect, Experiment, MeasurementModel, Mounting, PairRelation, Position, SetPoint, SwitchOn, TypeB, unwatched,
 };
@@ -39,7 +39,7 @@ fn repeated(model: &MeasurementModel) -> MonteCarlo {
     let x = truth(model, 1.0, &mut Random::new(5));
     let data = Data::new(model, observations(model, &x)).unwrap();
     let settings = Settings { runs: RUNS, seed: 8, coverage: 0.95, method: Method::Exact };
-    monte_carlo(&data, &x, &settings, &unwatched).unwrap()
+    MonteCarlo::of(&data, &x, &settings, &unwatched).unwrap()
 }
 
 /// Each switch-on but that of the arm, or the first, has a change of bias of its own.

@@ -1,11 +1,9 @@
 use std::f64::consts::TAU;
 
-use centrical::position::ThirdPosition::{AxisOneDown, AxisOneUp};
+use centrical::ThirdPosition::{AxisOneDown, AxisOneUp};
 use centrical::reduction::Record;
 use centrical::simulate::{Equipment, Machine, Recorder, Simulation, SimulationError, Tachometer};
-use centrical::{
-    ArmMotion, EARTH_RATE, Experiment, Group, MeasurementModel, PairRelation, SetPoint, carousel, rotation,
-};
+use centrical::{ArmMotion, Experiment, Group, MeasurementModel, PairRelation, SetPoint, Site, rotation};
 use nalgebra::Vector3;
 
 use crate::common::{Random, everything, experiment, kozlov, truth};
@@ -103,7 +101,7 @@ fn reading_at_an_instant_is_newton_in_the_reference_frame() {
         rho[(1, 1)] += x[26];
         rho[(2, 2)] += x[27];
         let r0 = mounting.arm_y + Vector3::new(x[shift], x[shift + 1], 0.0);
-        let c_yx = |t: f64| carousel(angle(t)) * rotation(&Vector3::new(x[0], x[1], 0.0));
+        let c_yx = |t: f64| rotation(&(Vector3::z() * angle(t))) * rotation(&Vector3::new(x[0], x[1], 0.0));
         let expected = Vector3::from_fn(|i, _| {
             let r_y = r0 + b_zy.transpose() * rho.column(i);
             let place = |t: f64| c_yx(t).transpose() * r_y;
@@ -127,7 +125,7 @@ fn specific_force(place: &dyn Fn(f64) -> Vector3<f64>, experiment: &Experiment) 
     let acceleration = (16.0 * sum(1.0) - sum(2.0) - 30.0 * place(0.0)) / (12.0 * h * h);
     let velocity = (8.0 * odd(1.0) - odd(2.0)) / (12.0 * h);
     let latitude = experiment.site.latitude.unwrap();
-    let earth = Vector3::new(0.0, latitude.cos(), latitude.sin()) * EARTH_RATE;
+    let earth = Vector3::new(0.0, latitude.cos(), latitude.sin()) * Site::EARTH_RATE;
     acceleration + 2.0 * earth.cross(&velocity) + Vector3::z() * experiment.site.gravity
 }
 

@@ -3,7 +3,7 @@
 //! Bounds are five standard errors of the statistic under that formula, so that a wrong factor of a few percent fails
 //! and no honest seed does.
 
-use centrical::position::ThirdPosition::AxisOneUp;
+use centrical::ThirdPosition::AxisOneUp;
 use centrical::reduction::Record;
 use centrical::simulate::{Coloured, Equipment, Losses, Machine, Recorder, Sensor, Simulation, Spikes};
 use centrical::{MeasurementModel, PairRelation, SetPoint};

@@ -1,10 +1,8 @@
 //! Simulated rests in attitudes of their own: the physics against the model, and what the reduction finds of them.
 
-use centrical::position::ThirdPosition::AxisOneUp;
+use centrical::ThirdPosition::AxisOneUp;
 use centrical::reduction::{Record, Rests};
-use centrical::simulate::{
-    Bumps, Coloured, Equipment, Hand, Sensor, SimulatedTumble, Simulation, Tremor, draw_attitudes, draw_truth,
-};
+use centrical::simulate::{Bumps, Coloured, Equipment, Hand, Sensor, SimulatedTumble, Simulation, Tremor};
 use centrical::{Experiment, MeasurementModel, Mounting, PairRelation, Position, SetPoint, unwatched};
 use nalgebra::Vector3;
 
@@ -26,7 +24,7 @@ const HAND: Hand = Hand {
 /// The arm of the usual experiment, and `count` rests, every second one in an attitude that is known.
 fn with_rests(count: usize, seed: u64) -> Experiment {
     let mut experiment = experiment(AxisOneUp, PairRelation::Common, &[1.0]);
-    for (n, up) in draw_attitudes(count, seed, 0).iter().enumerate() {
+    for (n, up) in Simulation::draw_attitudes(count, seed, 0).iter().enumerate() {
         let (id, mounting) = (format!("r{}", n + 1), experiment.mountings.len());
         experiment.mountings.push(Mounting { position: experiment.positions.len(), arm_y: Vector3::zeros() });
         let known = Position::known(id.clone(), up, 2e-3);
@@ -60,7 +58,7 @@ fn a_rest_reads_what_the_model_says() {
     let model = kozlov(with_rests(9, 3));
     let hand = Hand { tremor: Tremor::default(), bumps: Bumps::default(), shake: 0.0, ..HAND };
     let equipment = Equipment { hand, ..Equipment::default() };
-    let truth = draw_truth(&model, 1.0, 3);
+    let truth = Simulation::draw_truth(&model, 1.0, 3);
     let simulation = Simulation::new(&model, &truth, &equipment, 3).unwrap();
     let change = simulation.bias_change(model.experiment().mountings.len() - 1);
     assert!(change.iter().all(|change| *change != 0.0));
@@ -100,7 +98,7 @@ fn the_means_of_simulated_rests_are_as_uncertain_as_stated() {
     let (mut squares, mut count) = (0.0, 0.0);
     for seed in 0..RECORDS {
         let model = kozlov(with_rests(22, seed));
-        let truth = draw_truth(&model, 1.0, seed);
+        let truth = Simulation::draw_truth(&model, 1.0, seed);
         let simulation = Simulation::new(&model, &truth, &equipment, seed).unwrap();
         let tumble = tumble(&simulation, &model);
         let (made, samples) = (tumble.rests(), record(&tumble));
@@ -126,13 +124,13 @@ fn the_means_of_simulated_rests_are_as_uncertain_as_stated() {
 #[test]
 fn each_imperfection_has_draws_of_its_own() {
     let (without, with) = (kozlov(with_rests(0, 7)), kozlov(with_rests(9, 7)));
-    let (alone, both) = (draw_truth(&without, 1.0, 7), draw_truth(&with, 1.0, 7));
+    let (alone, both) = (Simulation::draw_truth(&without, 1.0, 7), Simulation::draw_truth(&with, 1.0, 7));
     for (parameter, value) in without.parameters().iter().zip(&alone) {
         assert_eq!(both[with.parameters().find(&parameter.name).unwrap()], *value, "{}", parameter.name);
     }
     // A known attitude errs by its uncertainty even if nothing else errs.
     let known = with.parameters().find("theta_1[r2]").unwrap();
-    let (exact, free) = (draw_truth(&with, 0.0, 7), with.parameters().find("theta_1[r1]").unwrap());
+    let (exact, free) = (Simulation::draw_truth(&with, 0.0, 7), with.parameters().find("theta_1[r1]").unwrap());
     assert!(exact[known] != 0.0 && exact[known].abs() < 0.01 && exact[free] == 0.0);
     let noisy = Sensor { white: 0.01, ..Sensor::default() };
     let steady = Equipment { hand: Hand { tremor: Tremor::default(), ..HAND }, sensor: noisy, ..Equipment::default() };

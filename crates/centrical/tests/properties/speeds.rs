@@ -1,11 +1,11 @@
 //! Measured speeds: as accurate as they say, contradicted only by what contradicts them, and worth what is predicted.
 
-use centrical::plan::{Noise, ReadingRange, predict};
-use centrical::position::ThirdPosition;
+use centrical::ThirdPosition;
+use centrical::plan::{Noise, Prediction, ReadingRange};
 use centrical::reduction::{MeasuredSpeed, PulseTrain, Record, ReducedMounting, ScheduledPlateau, SpeedTrace};
-use centrical::simulate::{Counter, Equipment, Machine, Recorder, Sensor, Simulation, Tachometer, draw_truth};
-use centrical::uncertainty::{Extent, Level, ShownSpeed, StatedSpeeds, speed_contradictions};
-use centrical::{Calibration, Data, Experiment, MeasurementModel, Observation, PairRelation, SetPoint, Weight, linear};
+use centrical::simulate::{Counter, Equipment, Machine, Recorder, Sensor, Simulation, Tachometer};
+use centrical::uncertainty::{Extent, Level, ShownSpeed, StatedSpeeds};
+use centrical::{Calibration, Data, Experiment, MeasurementModel, Observation, PairRelation, SetPoint, Weight};
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 
 use crate::common::{Random, experiment, kozlov, truth};
@@ -32,7 +32,7 @@ fn measured(
     seed: u64,
     is_counted: bool,
 ) -> Vec<(f64, f64, Option<MeasuredSpeed>)> {
-    let values = draw_truth(model, 1.0, seed);
+    let values = Simulation::draw_truth(model, 1.0, seed);
     let simulation = Simulation::new(model, &values, equipment, seed).unwrap();
     let (mut set, mut of_truth, mut readings) = (Vec::new(), Vec::new(), Vec::new());
     for m in 0..mountings {
@@ -58,7 +58,7 @@ fn reduced(model: &MeasurementModel, simulation: &Simulation, m: usize, counted:
     });
     let of_mounting = experiment.set_points.iter().filter(|s| s.mounting == m);
     let schedule: Vec<ScheduledPlateau> =
-        of_mounting.map(|s| ScheduledPlateau { omega: s.omega, nominal_z: linear::nominal(experiment, s) }).collect();
+        of_mounting.map(|s| ScheduledPlateau { omega: s.omega, nominal_z: experiment.nominal(s) }).collect();
     if let Some(per_revolution) = counted {
         return record.reduce_counted(&PulseTrain { t: mounting.pulses(), per_revolution }, &schedule).unwrap();
     }
@@ -152,7 +152,7 @@ fn sound_telemetry_contradicts_nothing() {
     let (mut reported, mut refused) = (0, 0);
     for _ in 0..2000 {
         let scale = SPEED_ERROR * random.normal();
-        let found = speed_contradictions(&telemetry(&mut random, |_, _| scale), &STATED);
+        let found = STATED.contradictions(&telemetry(&mut random, |_, _| scale));
         reported += usize::from(!found.is_empty());
         refused += usize::from(found.iter().any(|c| Level::Objection.is_passed_by(c.probability)));
     }
@@ -165,7 +165,7 @@ fn sound_telemetry_contradicts_nothing() {
 fn what_contradicts_the_schedule_is_named() {
     let mut random = Random::new(12);
     let mut found = |off: &dyn Fn(usize, f64) -> f64| {
-        let found = speed_contradictions(&telemetry(&mut random, off), &STATED);
+        let found = STATED.contradictions(&telemetry(&mut random, off));
         assert!(found.iter().all(|c| Level::Objection.is_passed_by(c.probability)), "{found:?}");
         found.into_iter().map(|c| (c.extent, c.set_points.len(), c.difference)).collect::<Vec<_>>()
     };
@@ -220,9 +220,9 @@ fn weights(model: &MeasurementModel) -> Vec<Weight> {
 /// Uncertainty of a compensated reading over the forces of the experiment [ug].
 fn predicted(model: &MeasurementModel) -> f64 {
     let set_points = &model.experiment().set_points;
-    let force = set_points.iter().map(|s| linear::nominal(model.experiment(), s).norm()).fold(0.0, f64::max);
+    let force = set_points.iter().map(|s| model.experiment().nominal(s).norm()).fold(0.0, f64::max);
     let zero = vec![0.0; model.parameters().len()];
-    let prediction = predict(model, &weights(model), &zero).unwrap();
+    let prediction = Prediction::of(model, &weights(model), &zero).unwrap();
     prediction.reading(ReadingRange { force }).unwrap()[0] / (1e-6 * centrical::STANDARD_GRAVITY)
 }
 

@@ -1,8 +1,8 @@
 //! What a laboratory states takes part in the fit: its checks hold where the stated deviations are there, and data that know
 //! better sharpen it.
 
-use centrical::position::ThirdPosition::AxisOneUp;
-use centrical::uncertainty::{Level, Method, MonteCarlo, Settings, chi_squared_tail, monte_carlo};
+use centrical::ThirdPosition::AxisOneUp;
+use centrical::uncertainty::{Level, Method, MonteCarlo, Settings, chi_squared_tail};
 use centrical::{
     Calibration, Data, Extension, Law, MeasurementModel, PairRelation, Rival, SetPoint, Source, TypeB, unwatched,
 };
@@ -21,7 +21,7 @@ fn repeated(model: &MeasurementModel, stated: &TypeB) -> MonteCarlo {
     let x = truth(&model, 0.5, &mut Random::new(3));
     let data = Data::new(&model, observations(&model, &x)).unwrap();
     let settings = Settings { runs: RUNS, seed: 4, coverage: 0.95, method: Method::Exact };
-    monte_carlo(&data, &x, &settings, &unwatched).unwrap()
+    MonteCarlo::of(&data, &x, &settings, &unwatched).unwrap()
 }
 
 fn bounded(name: &str, u: f64) -> TypeB {

@@ -3,11 +3,11 @@
 use std::cell::Cell;
 
 use centrical::PairRelation;
-use centrical::position::ThirdPosition;
+use centrical::ThirdPosition;
 use centrical::reduction::{NoiseModel, PlateauMean, Record, ReducedMounting, ScheduledPlateau};
-use centrical::simulate::{Equipment, Machine, Sensor, Simulation, draw_truth};
+use centrical::simulate::{Equipment, Machine, Sensor, Simulation};
 use centrical::uncertainty::{OncePerRevolution, TiltComparison};
-use centrical::{Calibration, Data, MeasurementModel, Observation, linear};
+use centrical::{Calibration, Data, MeasurementModel, Observation};
 use nalgebra::Vector3;
 
 use crate::common::{experiment, kozlov};
@@ -29,7 +29,7 @@ fn means(model: &MeasurementModel, truth: &[f64], seed: u64) -> Vec<PlateauMean>
             whole
         });
         let schedule: Vec<ScheduledPlateau> = (experiment.set_points.iter().filter(|s| s.mounting == m))
-            .map(|s| ScheduledPlateau { omega: s.omega, nominal_z: linear::nominal(experiment, s) })
+            .map(|s| ScheduledPlateau { omega: s.omega, nominal_z: experiment.nominal(s) })
             .collect();
         record.reduce(None, &schedule).unwrap_or_else(|error| panic!("{seed}, {m}: {error}"))
     };
@@ -41,7 +41,7 @@ fn means(model: &MeasurementModel, truth: &[f64], seed: u64) -> Vec<PlateauMean>
 /// The comparison for a session whose true tilt has that size [rad]; `change` is done to every term.
 fn comparison(tilt: [f64; 2], seed: u64, change: impl Fn(&mut [Vector3<f64>; 2])) -> TiltComparison {
     let model = kozlov(experiment(ThirdPosition::AxisOneDown, PairRelation::Common, &[1.0, 0.5]));
-    let mut truth = draw_truth(&model, 1.0, seed);
+    let mut truth = Simulation::draw_truth(&model, 1.0, seed);
     truth[..2].copy_from_slice(&tilt);
     let means = means(&model, &truth, seed);
     let observation =

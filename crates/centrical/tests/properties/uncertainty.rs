@@ -1,5 +1,5 @@
-use centrical::position::ThirdPosition::AxisOneUp;
-use centrical::uncertainty::{Budget, Degrees, Method, MonteCarlo, Settings, monte_carlo};
+use centrical::ThirdPosition::AxisOneUp;
+use centrical::uncertainty::{Budget, Degrees, Method, MonteCarlo, Settings};
 use centrical::{
     Calibration, Data, Experiment, Fit, MeasurementModel, Observation, PairRelation, Rival, Source, TypeB, rotation,
     unwatched,
@@ -55,7 +55,7 @@ impl Case {
         let settings = Settings { runs, seed: 1, coverage: 0.95, method };
         let model = self.model.clone().with_stated(*stated);
         let data = Data::new(&model, self.observations.clone()).unwrap();
-        monte_carlo(&data, &self.truth, &settings, &unwatched).unwrap()
+        MonteCarlo::of(&data, &self.truth, &settings, &unwatched).unwrap()
     }
 }
 
@@ -254,7 +254,7 @@ fn monte_carlo_does_not_depend_on_threads() {
     let settings = Settings { runs: 300, seed: 2, coverage: 0.95, method: Method::Exact };
     let stating = case.model.clone().with_stated(STATED);
     let data = Data::new(&stating, case.observations.clone()).unwrap();
-    let other = monte_carlo(&data, &case.truth, &settings, &unwatched).unwrap();
+    let other = MonteCarlo::of(&data, &case.truth, &settings, &unwatched).unwrap();
     assert_ne!(one, other);
 }
 

@@ -1,4 +1,4 @@
-use centrical::position::ThirdPosition::AxisOneUp;
+use centrical::ThirdPosition::AxisOneUp;
 use centrical::uncertainty::{Pattern, Trend};
 use centrical::{Calibration, Data, Extension, Law, MeasurementModel, Observation, PairRelation};
 use nalgebra::Vector3;

@@ -1,7 +1,7 @@
 //! Priors and readings so weak that the model is curved over what they leave open.
 
-use centrical::position::ThirdPosition::AxisOneUp;
-use centrical::uncertainty::{Method, Settings, monte_carlo};
+use centrical::ThirdPosition::AxisOneUp;
+use centrical::uncertainty::{Method, MonteCarlo, Settings};
 use centrical::{Calibration, Data, Observation, PairRelation, Termination, unwatched};
 
 use crate::common::{Random, experiment, kozlov, observations, truth};
@@ -18,7 +18,7 @@ fn joint_covariance_with_one_radius() {
             let x = truth(&model, 0.5, &mut Random::new(3));
             let data = Data::new(&model, observations(&model, &x)).unwrap();
             let settings = Settings { runs: 300, seed: 4, coverage: 0.95, method: Method::Exact };
-            let shown = monte_carlo(&data, &x, &settings, &unwatched).unwrap();
+            let shown = MonteCarlo::of(&data, &x, &settings, &unwatched).unwrap();
             let ratio = shown.weighted_square.mean / shown.weighted_square.degrees_of_freedom as f64;
             println!("{relation:?} {name}: squared error {ratio:.3} of the stated");
             assert_eq!((shown.weighted_square.degrees_of_freedom, shown.failures), (49, 0), "{relation:?} {name}");
@@ -57,7 +57,7 @@ fn parameters_beyond_the_linear_range() {
     let data = Data::new(&model, made).unwrap();
     let (runs, coverage) = (300, 0.95);
     let shown =
-        monte_carlo(&data, &x, &Settings { runs, seed: 6, coverage, method: Method::Exact }, &unwatched).unwrap();
+        MonteCarlo::of(&data, &x, &Settings { runs, seed: 6, coverage, method: Method::Exact }, &unwatched).unwrap();
     assert_eq!(shown.failures, 0);
     for (parameter, statistics) in model.parameters().iter().zip(&shown.parameters) {
         let Some(statistics) = statistics else { continue };

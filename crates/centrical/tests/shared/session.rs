@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 use std::path::{Path, PathBuf};
 
 use centrical::reduction::{Record, ScheduledPlateau, SpeedTrace};
-use centrical::{EARTH_RATE, ErrorModel, carousel, rotation};
+use centrical::{ErrorModel, Site, rotation};
 use nalgebra::{Matrix3, Vector3};
 
 /// A session and its truth.
@@ -44,7 +44,7 @@ impl Session {
         let delta = numbers(&truth, "\"delta\":");
         Self {
             gravity,
-            coriolis: 2.0 * EARTH_RATE * latitude.sin(),
+            coriolis: 2.0 * Site::EARTH_RATE * latitude.sin(),
             alpha: numbers(&truth, "\"alpha\":"),
             dr: numbers(&truth, "\"dR\":"),
             opposite: experiment.contains("pair_relation = \"opposite\""),
@@ -99,7 +99,7 @@ impl Session {
         let omega = set_point * stretch;
         let d = Matrix3::from_diagonal(&Vector3::new(1.0, 1.0, 0.0)) * -(omega * (omega + self.coriolis));
         let plumb = rotation(&Vector3::new(self.alpha[0], self.alpha[1], 0.0)) * Vector3::z();
-        let u = if set_point == 0.0 { carousel(angle) * plumb } else { Vector3::z() * plumb.z };
+        let u = if set_point == 0.0 { rotation(&(Vector3::z() * angle)) * plumb } else { Vector3::z() * plumb.z };
         let pair = m.position / 2;
         let sign = if self.opposite && m.position % 2 == 1 { -1.0 } else { 1.0 };
         let place = m.arm_y + Vector3::new(self.dr[2 * pair], self.dr[2 * pair + 1], 0.0) * sign;

@@ -1,12 +1,12 @@
 //! What the source says beside its rank: known radii, small coefficients, the Coriolis term, the error of a radius, the saving
 //! of the filter, the coarse calibration, and the geometry that is "estimated or excluded". Docs: "What else the source says".
 
+use centrical::ThirdPosition::{AxisOneDown, AxisOneUp};
 use centrical::fit::filter::Lifetimes;
 use centrical::plan::Normalised;
-use centrical::position::ThirdPosition::{AxisOneDown, AxisOneUp};
 use centrical::{
-    ArmMotion, Calibration, Data, EARTH_RATE, ErrorModel, Experiment, Extension, Group, LeastSquares, MeasurementModel,
-    Observation, PairRelation, STANDARD_GRAVITY, Termination,
+    ArmMotion, Calibration, Data, ErrorModel, Experiment, Extension, Group, LeastSquares, MeasurementModel,
+    Observation, PairRelation, STANDARD_GRAVITY, Site, Termination,
 };
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 
@@ -255,7 +255,7 @@ fn the_printed_bound_of_the_coriolis_term_lacks_a_factor_two() {
     };
     let (low, high) = (0..360).map(vertical).fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), f| (a.min(f), b.max(f)));
     let amplitude = 0.5 * (high - low);
-    assert!((amplitude / (2.0 * EARTH_RATE * speed * 0.5) - 1.0).abs() < 1e-6, "{amplitude}");
+    assert!((amplitude / (2.0 * Site::EARTH_RATE * speed * 0.5) - 1.0).abs() < 1e-6, "{amplitude}");
     let printed = 7.3e-5 * speed * 0.5;
     assert!(printed < 2.5e-3 && amplitude > 1.8 * 2.5e-3, "{amplitude} against {printed}");
 }

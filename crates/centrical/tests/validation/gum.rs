@@ -1,6 +1,6 @@
 //! Examples H.1 and H.3 and table G.2 of the GUM (JCGM 100:2008): every number printed, to every digit printed.
 
-use centrical::uncertainty::{Degrees, coverage_factor, effective_degrees_of_freedom};
+use centrical::uncertainty::Degrees;
 use nalgebra::{DMatrix, DVector};
 
 use crate::common::Regression;
@@ -29,7 +29,7 @@ fn h_1_end_gauge() {
     let d = [(5.8, Degrees::Finite(24.0)), (3.9, Degrees::Finite(5.0)), (6.7, Degrees::Finite(8.0))];
     let u_d = combined(&d.map(|(u, _)| u));
     assert_printed("u(d)", u_d, 9.7, 1);
-    let Degrees::Finite(nu_d) = effective_degrees_of_freedom(&d) else { panic!("finite") };
+    let Degrees::Finite(nu_d) = Degrees::effective(&d) else { panic!("finite") };
     // The GUM goes on from the printed 9.7 nm.
     assert_printed("nu(d)", nu_d * (9.7 / u_d).powi(4), 25.6, 1);
 
@@ -49,9 +49,9 @@ fn h_1_end_gauge() {
     let printed = [25.0, 9.7, 2.9, 16.6];
     assert_cut_off("u_c^2", combined(&components).powi(2), 1002.0, 0);
     let contributions: Vec<(f64, Degrees)> = printed.into_iter().zip(degrees).collect();
-    let Degrees::Finite(nu) = effective_degrees_of_freedom(&contributions) else { panic!("finite") };
+    let Degrees::Finite(nu) = Degrees::effective(&contributions) else { panic!("finite") };
     assert_cut_off("nu_eff", nu, 16.7, 1);
-    let k = coverage_factor(0.99, Degrees::Finite(nu.floor()));
+    let k = Degrees::Finite(nu.floor()).coverage_factor(0.99);
     assert_printed("t_99(16)", k, 2.92, 2);
     assert_printed("U_99", k * 32.0, 93.0, 0);
     assert_printed("l in mm", (l_s + 215.0) * 1e-6, 50.000_838, 6);
@@ -144,10 +144,10 @@ fn table_g_2() {
             let decimals = if nu == 100.0 { 3 } else { 2 };
             // t_90(35) is 1.6896: a misprint that NIST TN 1297, table B.1, shares.
             let printed = if (nu, printed) == (35.0, 1.70) { 1.69 } else { printed };
-            assert_printed(&format!("t_{p}({nu})"), coverage_factor(p, Degrees::Finite(nu)), printed, decimals);
+            assert_printed(&format!("t_{p}({nu})"), Degrees::Finite(nu).coverage_factor(p), printed, decimals);
         }
     }
     for (p, printed) in columns.into_iter().zip([1.0, 1.645, 1.960, 2.0, 2.576, 3.0]) {
-        assert_printed(&format!("t_{p}(infinity)"), coverage_factor(p, Degrees::Infinite), printed, 3);
+        assert_printed(&format!("t_{p}(infinity)"), Degrees::Infinite.coverage_factor(p), printed, 3);
     }
 }

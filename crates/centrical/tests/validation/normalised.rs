@@ -1,8 +1,8 @@
 //! The coefficients of the normalised experiment [K5.5]. In its units (R*, g) the source says the coefficients of `H` are
 //! "zeros, numbers of the form +-1, +-1/2, +-(10 m)^(1,2,3), +-1/g, and small coefficients".
 
+use centrical::ThirdPosition::{AxisOneDown, AxisOneUp};
 use centrical::plan::Normalised;
-use centrical::position::ThirdPosition::{AxisOneDown, AxisOneUp};
 use centrical::{ErrorModel, MeasurementModel, PairRelation};
 
 /// `R* Omega*^2 / g = 10`, `Omega = Omega* sqrt(m)`, radii R* and R*/2, rest at 0 and pi.

@@ -1,9 +1,9 @@
 //! The two measurements that the source prints in full (its section 5), term by term: `z^(1)` at rest and `z^(6)` while
 //! spinning, against the columns of `H`. Each printed coefficient is written here as it stands there.
 
-use centrical::position::ThirdPosition::AxisOneUp;
-use centrical::position::kozlov_2017;
-use centrical::{ErrorModel, MeasurementModel, Monomial, PairRelation, SetPoint, linear};
+use centrical::Position;
+use centrical::ThirdPosition::AxisOneUp;
+use centrical::{ErrorModel, MeasurementModel, Monomial, PairRelation, SetPoint};
 use nalgebra::{Matrix3, Vector3};
 
 use crate::common::{experiment, kozlov};
@@ -79,7 +79,7 @@ fn z6_as_printed() {
         ],
     );
     // No unknowns, no small measurement: there is no constant -w R0_26 in the exact model's reading either.
-    let z = (model.reading(&set_point, &[0.0; 55]) - linear::nominal(experiment, &set_point)) / experiment.site.gravity;
+    let z = (model.reading(&set_point, &[0.0; 55]) - experiment.nominal(&set_point)) / experiment.site.gravity;
     assert!(z.amax() < 1e-13 && w * r_26 > 1.0, "{z:?}");
 }
 
@@ -87,7 +87,7 @@ fn z6_as_printed() {
 /// by 180 deg about the vertical; in 3 and 4 axis 2 lies along the arm both ways and axis 1 is vertical.
 #[test]
 fn positions_of_the_text() {
-    let p: Vec<Matrix3<f64>> = kozlov_2017(AxisOneUp).into_iter().map(|position| position.p_zy).collect();
+    let p: Vec<Matrix3<f64>> = Position::kozlov_2017(AxisOneUp).into_iter().map(|position| position.p_zy).collect();
     assert_eq!(p[0], Matrix3::identity());
     assert_eq!(p[1], Matrix3::from_diagonal(&Vector3::new(-1.0, -1.0, 1.0)));
     assert_eq!(p[5], Matrix3::new(0.0, 1.0, 0.0, 0.0, 0.0, -1.0, -1.0, 0.0, 0.0));

@@ -2,8 +2,8 @@
 //! (column-scaled SVD, tolerance 1e-10), with the smallest non-zero singular value over the largest in brackets where it
 //! is below 1e-3. The null directions and the ranks with extensions named there.
 
+use centrical::ThirdPosition::{self, AxisOneDown, AxisOneUp};
 use centrical::plan::Normalised;
-use centrical::position::ThirdPosition::{self, AxisOneDown, AxisOneUp};
 use centrical::{
     ErrorModel, Extension, Group, Law, MeasurementModel, Observability, PairRelation, Rival, Study, Weight,
 };

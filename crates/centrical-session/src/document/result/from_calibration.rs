@@ -241,7 +241,7 @@ impl ObservabilitySummary {
         Self {
             rank: seen.rank(),
             columns: seen.columns(),
-            tolerance: centrical::RANK_TOLERANCE,
+            tolerance: centrical::Observability::RANK_TOLERANCE,
             singular_values: seen.singular_values().to_vec(),
             null_directions: seen.null_directions().iter().map(|d| d.terms().iter().map(named).collect()).collect(),
             null_directions_held: fit.null_directions_held,

@@ -1,7 +1,7 @@
 //! How the speeds of plateaus are known, and what the telemetry shows against them.
 
 use centrical::reduction::{ClockAgreement, MeasuredSpeed};
-use centrical::uncertainty::{Extent, ShownSpeed, SpeedContradiction, StatedSpeeds, speed_contradictions};
+use centrical::uncertainty::{Extent, ShownSpeed, SpeedContradiction, StatedSpeeds};
 use centrical::{Calibration, Data, Experiment, FitError, SetPoint, Termination};
 use serde::{Deserialize, Serialize};
 
@@ -145,7 +145,7 @@ impl SpeedsSummary {
         let (scheduled, used) = (&session.experiment.set_points, &calibration.data().model().experiment().set_points);
         let mut findings: Vec<SpeedFinding> = clocks(session, reduced);
         let shown = shown(scheduled, &reduced.speeds);
-        for contradiction in speed_contradictions(&shown, &stated(session)) {
+        for contradiction in stated(session).contradictions(&shown) {
             findings.push(SpeedFinding::Difference(SpeedDifference {
                 record_follows: record_follows(calibration, &shown, &contradiction, session.speeds.is_in_files())?,
                 ..SpeedDifference::new(session, &contradiction, shown.len())

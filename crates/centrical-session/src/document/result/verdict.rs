@@ -1,7 +1,7 @@
 //! Whether a result can be accepted as it stands, and why not.
 
 use centrical::Group;
-use centrical::uncertainty::{Findings, Level, Objection, objections};
+use centrical::uncertainty::{Findings, Level, Objection};
 
 use super::budget_and_checks::PatternSummary;
 use super::rivals::RivalSummary;
@@ -31,7 +31,7 @@ impl CalibrationResult {
         // Older programs gave such a coefficient a value.
         let is_without = |p: &ParameterEstimate| p.standard_uncertainty.is_some_and(|u| is_vague(p.group, u));
         let is_lost = |name: &&String| self.parameter(name).is_none_or(|p| !p.estimable || is_without(p));
-        objections(Findings {
+        Findings {
             termination: self.fit.termination,
             iterations: self.fit.iterations,
             chi_squared: self.fit.chi_squared,
@@ -47,7 +47,8 @@ impl CalibrationResult {
                 .map(|drift| (drift.beyond_speed.unwrap_or(drift.chi_squared), drift.degrees_of_freedom)),
             creep: self.drift.as_ref().and_then(|drift| drift.creep).map(|creep| creep.probability),
             not_determined: terms.filter(is_lost).cloned().collect(),
-        })
+        }
+        .objections()
     }
 
     /// chi^2 with the strongest noise of rests that is not excluded. Older programs wrote no more than how strong it is.

@@ -1,6 +1,6 @@
 //! Time against uncertainty, with plans that are made without a search beside the best.
 
-use centrical::plan::{Candidates, Effort, FrontierPoint, Schedule, Task, frontier};
+use centrical::plan::{Candidates, Effort, FrontierPoint, Schedule, Task};
 use centrical::{Experiment, OnProgress, SetPoint};
 
 use super::request::PlanRequest;
@@ -23,7 +23,7 @@ pub(super) fn frontier_rows(
     }
     let Task { candidates, criterion, .. } = &planning.task;
     let times: Vec<f64> = request.frontier.iter().map(|factor| factor * time).collect();
-    let points = frontier(candidates, criterion, &times, Effort::usual(candidates), progress);
+    let points = candidates.frontier(criterion, &times, Effort::usual(candidates), progress);
     let experiment = candidates.experiment();
     let has_arm = experiment.has_arm();
     let uniform = with_set_points(candidates, &uniform_set_points(experiment));

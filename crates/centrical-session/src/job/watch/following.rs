@@ -9,7 +9,7 @@ use std::{fs, io};
 use centrical::fit::{Follower, Progress};
 use centrical::plan::{Benefit, Criterion, NextPlateau, PlanError, ReadingRange};
 use centrical::reduction::MeasuredSpeed;
-use centrical::{FitError, Group, MeasurementModel, Observation, SetPoint, Weight, linear};
+use centrical::{FitError, Group, MeasurementModel, Observation, SetPoint, Weight};
 
 use nalgebra::Vector3;
 
@@ -65,7 +65,7 @@ impl<'a> Following<'a> {
         let follower = Follower::resume(model, state.taken(), &state.point, state.reference())
             .map_err(|source| Error::fit(&state_file, source))?;
         let experiment = &session.experiment;
-        let load = |s: &SetPoint| linear::nominal(experiment, s).norm();
+        let load = |s: &SetPoint| experiment.nominal(s).norm();
         let force = experiment.set_points.iter().map(load).fold(0.0, f64::max);
         let planning = |source| Error::Planning { file: session.file.clone(), source };
         let mut next = NextPlateau::new(model, &Criterion::Reading(ReadingRange { force })).map_err(planning)?;

@@ -14,7 +14,7 @@ use super::lifetimes::Lifetimes;
 use super::readings::Readings;
 use crate::linalg::factor::Factor;
 use crate::model::{FitError, Linearisation};
-use crate::observability::RANK_TOLERANCE;
+use crate::observability::Observability;
 
 /// A square-root information filter over the plateaus of an order.
 ///
@@ -214,7 +214,7 @@ fn separate(rows: &[Row], carried: &[usize], lengths: &[f64]) -> (Vec<Row>, Vec<
     let mut block = dense.columns(0, retiring).into_owned();
     block.column_iter_mut().zip(lengths).filter(|(_, l)| **l > 0.0).for_each(|(mut column, l)| column /= l.sqrt());
     let svd = block.svd(true, false);
-    let seen = |n: usize| svd.singular_values[n] > RANK_TOLERANCE;
+    let seen = |n: usize| svd.singular_values[n] > Observability::RANK_TOLERANCE;
     if (0..retiring).all(seen) {
         return (rows.to_vec(), Vec::new());
     }

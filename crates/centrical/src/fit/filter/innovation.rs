@@ -16,7 +16,7 @@ use statrs::distribution::{ChiSquared, ContinuousCDF};
 use super::information::Filter;
 use super::readings::Readings;
 use crate::model::FitError;
-use crate::observability::RANK_TOLERANCE;
+use crate::observability::Observability;
 
 /// The outcome of the test of one plateau.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -85,7 +85,7 @@ impl Unexplained {
         scaled.for_each(|(mut column, length)| column /= length.sqrt());
         let svd = SVD::new(rows, true, false);
         // A scaled design has its largest singular value at 1 or somewhat above; what the retired left may be less.
-        let tolerance = RANK_TOLERANCE * svd.singular_values.max().max(1.0);
+        let tolerance = Observability::RANK_TOLERANCE * svd.singular_values.max().max(1.0);
         let seen: Vec<usize> = (0..svd.singular_values.len()).filter(|&k| svd.singular_values[k] > tolerance).collect();
         let range = svd.u.unwrap_or_default().select_columns(&seen);
         let rest = misfit - &range * range.tr_mul(misfit);
