@@ -75,30 +75,12 @@ impl Record {
         telemetry: Option<&SpeedTrace>,
         schedule: &[ScheduledPlateau],
     ) -> Result<ReducedMounting, ReductionError> {
-        let located = Survey::of(self.as_slice())?.locate(telemetry, schedule)?;
-        averaged(self, located, schedule.len())
+        let mut located = Survey::of(self.as_slice())?.locate(schedule)?;
+        if let Some(telemetry) = telemetry {
+            located.time_telemetry(telemetry);
+        }
+        located.averaged(self.as_slice())
     }
-
-    /// The same with speeds by a counter of revolutions in place of telemetry.
-    ///
-    /// # Errors
-    /// As [`Record::reduce`].
-    pub fn reduce_counted(
-        &self,
-        pulses: &PulseTrain,
-        schedule: &[ScheduledPlateau],
-    ) -> Result<ReducedMounting, ReductionError> {
-        let mut located = Survey::of(self.as_slice())?.locate(None, schedule)?;
-        located.time_pulses(pulses);
-        averaged(self, located, schedule.len())
-    }
-}
-
-/// The plateaus of a record that are located.
-fn averaged(record: &Record, located: Located, count: usize) -> Result<ReducedMounting, ReductionError> {
-    let average = |plateau| located.average(plateau, record.as_slice(), 0);
-    let plateaus = (0..count).map(average).collect::<Result<_, _>>()?;
-    Ok(ReducedMounting::new(located, plateaus))
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! The two passes of a reduction over the record in a file, in memory that does not grow with it. A record that is not too
 //! long is read once.
 
-use centrical::reduction::{Averaging, Located, PlateauFit, Record, RecordSlice, ReductionError, Survey};
+use centrical::reduction::{Averaging, Located, PlateauFit, Record, ReductionError, Survey};
 use centrical::{OnProgress, advance};
 use centrical_table::{Extent, Source};
 use rayon::prelude::*;
@@ -68,8 +68,7 @@ impl<'a> RecordFile<'a> {
 
     /// Second pass: the means of the plateaus. Of a record that is not kept, a part of a plateau at a time is held.
     pub fn means(&self, cache: &SampleCache, located: &Located) -> Result<Vec<Mean>, Error> {
-        let plateaus: Vec<PlateauInParts> =
-            (0..located.windows().len()).map(|k| PlateauInParts::new(located, k)).collect();
+        let plateaus: Vec<Averaging> = (0..located.windows().len()).map(|k| Averaging::new(located, k)).collect();
         match &cache.index {
             _ if cache.is_whole => {
                 advance(self.progress, self.sources.iter().map(Source::length).sum())?;
@@ -81,12 +80,12 @@ impl<'a> RecordFile<'a> {
     }
 
     /// The means of the plateaus of a record that is kept.
-    fn means_of_cache(&self, cache: &SampleCache, mut plateaus: Vec<PlateauInParts>) -> Result<Vec<Mean>, Error> {
+    fn means_of_cache(&self, cache: &SampleCache, mut plateaus: Vec<Averaging>) -> Result<Vec<Mean>, Error> {
         let mut means = Vec::with_capacity(plateaus.len());
         while !plateaus.is_empty() {
             let mut samples = 0;
-            let is_beyond = |plateau: &PlateauInParts| {
-                samples += plateau.parts.iter().map(|part| cache.samples_in(*part)).max().unwrap_or(0);
+            let is_beyond = |plateau: &Averaging| {
+                samples += plateau.open_parts().map(|part| cache.samples_in(part)).max().unwrap_or(0);
                 samples > SAMPLES_AT_A_TIME
             };
             let later = plateaus.split_off(plateaus.iter().position(is_beyond).unwrap_or(plateaus.len()).max(1));
@@ -105,13 +104,13 @@ impl<'a> RecordFile<'a> {
     }
 
     /// Part after part: while one is worked on, the next is read.
-    fn means_reread(&self, index: &RecordIndex, mut plateaus: Vec<PlateauInParts>) -> Result<Vec<Mean>, Error> {
+    fn means_reread(&self, index: &RecordIndex, mut plateaus: Vec<Averaging>) -> Result<Vec<Mean>, Error> {
         let mut record = index.parts();
         let mut read = |part: [f64; 2], samples: &mut Record| {
             Ok::<(), Error>(advance(self.progress, record.read(part, samples)?)?)
         };
         let parts: Vec<(usize, [f64; 2])> = (plateaus.iter().enumerate())
-            .flat_map(|(k, plateau)| plateau.parts.iter().map(move |part| (k, *part)))
+            .flat_map(|(k, plateau)| plateau.open_parts().map(move |part| (k, part)))
             .collect();
         let [mut samples, mut next] = [Record::default(), Record::default()];
         parts.first().map_or(Ok(()), |(_, part)| read(*part, &mut samples))?;
@@ -127,7 +126,7 @@ impl<'a> RecordFile<'a> {
     }
 
     /// All of the record once more, where it can only be read from its start.
-    fn means_in_order(&self, mut plateaus: Vec<PlateauInParts>) -> Result<Vec<Mean>, Error> {
+    fn means_in_order(&self, mut plateaus: Vec<Averaging>) -> Result<Vec<Mean>, Error> {
         let mut record = RecordReader::open_all(self.sources.clone(), Extent::Whole, self.columns)?;
         let mut gathered: Vec<Record> = plateaus.iter().map(|_| Record::default()).collect();
         while let Some(batch) = record.next_batch()? {
@@ -152,45 +151,6 @@ impl<'a> RecordFile<'a> {
         advance(self.progress, record.newly_read())?;
         let plateaus = plateaus.into_iter().zip(gathered);
         Ok(plateaus.map(|(plateau, samples)| plateau.finish(samples.as_slice())).collect())
-    }
-}
-
-/// A plateau that is averaged part by part.
-struct PlateauInParts<'a> {
-    /// From and to [s], in ascending order.
-    parts: Vec<[f64; 2]>,
-    /// How many of them are added.
-    added: usize,
-    plateau: Result<Averaging<'a>, ReductionError>,
-}
-
-impl<'a> PlateauInParts<'a> {
-    fn new(located: &'a Located, plateau: usize) -> Self {
-        Self { parts: located.parts(plateau), added: 0, plateau: Ok(Averaging::new(located, plateau)) }
-    }
-
-    /// The part whose samples are to be added next.
-    fn next_part(&self) -> Option<[f64; 2]> {
-        self.parts.get(self.added).copied()
-    }
-
-    /// Adds the samples of the next part, from which `repeated` ones with the stamp of the one before are left out.
-    fn add(&mut self, samples: RecordSlice, repeated: usize) {
-        let part = self.parts[self.added];
-        self.added += 1;
-        if let Ok(plateau) = &mut self.plateau
-            && let Err(error) = plateau.add(part, samples, repeated)
-        {
-            self.plateau = Err(error);
-        }
-    }
-
-    /// The mean, once the samples of the parts that are still open are added.
-    fn finish(mut self, samples: RecordSlice) -> Mean {
-        while self.next_part().is_some() {
-            self.add(samples, 0);
-        }
-        self.plateau.and_then(Averaging::finish)
     }
 }
 

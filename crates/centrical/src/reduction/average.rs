@@ -10,7 +10,7 @@ mod stuck;
 use nalgebra::{Matrix3, Vector3};
 
 use super::error::ReductionError;
-use super::locate::{ClockAgreement, ClockOffset, Located, SpeedReading, TURNING, Window};
+use super::locate::{ClockAgreement, ClockOffset, Located, SpeedReading, TURNING, Timing, Window};
 use super::plateau::LeftOut;
 use super::record::RecordSlice;
 use super::survey::Blocks;
@@ -28,6 +28,8 @@ pub struct Averaging<'a> {
     index: usize,
     window: &'a Window,
     blocks: &'a Blocks,
+    /// Parts of the window that are not added yet, from and to [s], the next one last.
+    open: Vec<[f64; 2]>,
     fitted: Fitted,
     /// Triangle and coefficients of all samples so far.
     fit: Option<(Triangle, Vec<Vector3<f64>>)>,
@@ -35,18 +37,16 @@ pub struct Averaging<'a> {
     left_out: LeftOut,
     /// Stamp of the last one [s].
     last: Option<f64>,
+    /// Why the plateau has no average.
+    refused: Option<ReductionError>,
 }
 
 /// A mounting with its plateaus located and averaged, before the noise of the session is known.
 #[derive(Debug, Clone)]
 pub struct ReducedMounting {
     pub(super) plateaus: Vec<PlateauFit>,
-    /// Speed on each plateau by the telemetry [rad/s].
-    pub(super) speeds: Vec<Option<f64>>,
+    pub(super) timing: Timing,
     settling_time: Option<f64>,
-    clock_offset: Option<ClockOffset>,
-    agreement: Option<ClockAgreement>,
-    readings: Vec<Option<SpeedReading>>,
     unscheduled: Vec<[f64; 2]>,
 }
 
@@ -58,29 +58,54 @@ impl Located {
     /// [`ReductionError`] if the samples are not steady, or do not separate the mean from the once-per-revolution term.
     pub fn average(&self, plateau: usize, samples: RecordSlice, repeated: usize) -> Result<PlateauFit, ReductionError> {
         let mut averaging = Averaging::new(self, plateau);
-        for (k, part) in self.parts(plateau).into_iter().enumerate() {
-            averaging.add(part, samples, if k == 0 { repeated } else { 0 })?;
-        }
-        averaging.finish()
+        averaging.add(samples, repeated);
+        averaging.finish(samples)
+    }
+
+    /// Averages all plateaus from the record.
+    ///
+    /// # Errors
+    /// As [`Self::average`].
+    pub fn averaged(self, record: RecordSlice) -> Result<ReducedMounting, ReductionError> {
+        let average = |plateau| self.average(plateau, record, 0);
+        let plateaus = (0..self.windows.len()).map(average).collect::<Result<_, _>>()?;
+        Ok(ReducedMounting::new(self, plateaus))
     }
 }
 
 impl<'a> Averaging<'a> {
     /// Begins with no samples.
     pub fn new(located: &'a Located, index: usize) -> Self {
-        let (window, blocks) = (&located.windows[index], &located.blocks);
-        let (fitted, left_out) = (Fitted::default(), LeftOut::default());
-        Self { index, window, blocks, fitted, fit: None, left_out, last: None }
+        Self::in_parts(located, index, located.parts(index))
     }
 
-    /// Adds the samples of the next part, from and to [s], without the `repeated` ones that had the stamp of the one before.
-    /// They are judged by the fit of all samples so far.
-    ///
-    /// # Errors
-    /// [`ReductionError`] if the samples are not steady, or do not separate the mean from the once-per-revolution term.
-    pub fn add(&mut self, part: [f64; 2], record: RecordSlice, repeated: usize) -> Result<(), ReductionError> {
-        let index = self.index;
-        let record = record.between(part);
+    /// Begins with no samples, for these parts of the window, from and to [s], in the order of time.
+    pub fn in_parts(located: &'a Located, index: usize, parts: Vec<[f64; 2]>) -> Self {
+        let (window, blocks) = (&located.windows[index], &located.blocks);
+        let open = parts.into_iter().rev().collect();
+        let (fitted, left_out) = (Fitted::default(), LeftOut::default());
+        Self { index, window, blocks, open, fitted, fit: None, left_out, last: None, refused: None }
+    }
+
+    /// The parts of the window whose samples are to be added, from and to [s], in the order of time.
+    pub fn open_parts(&self) -> impl Iterator<Item = [f64; 2]> + '_ {
+        self.open.iter().rev().copied()
+    }
+
+    /// The first of them.
+    pub fn next_part(&self) -> Option<[f64; 2]> {
+        self.open.last().copied()
+    }
+
+    /// Adds the samples of the next part, without the `repeated` ones that had the stamp of the one before; samples outside the part
+    /// are ignored. They are judged by the fit of all samples so far.
+    pub fn add(&mut self, samples: RecordSlice, repeated: usize) {
+        if let Some(part) = self.open.pop().filter(|_| self.refused.is_none()) {
+            self.refused = self.judge(samples.between(part), repeated).err();
+        }
+    }
+
+    fn judge(&mut self, record: RecordSlice, repeated: usize) -> Result<(), ReductionError> {
         if record.t.is_empty() {
             return Ok(());
         }
@@ -95,7 +120,7 @@ impl<'a> Averaging<'a> {
             fit = self.fit_from(&samples, &mut strips, &of_all);
         }
         self.fit = Some(fit?);
-        check_range(&samples, &strips, index)?;
+        check_range(&samples, &strips, self.index)?;
         self.left_out += samples.left_out(self.last, samples.len() - strips.good(), strips.stuck_and_unreadable());
         self.last = samples.t.last().copied();
         self.fitted = strips.into_fitted();
@@ -125,11 +150,15 @@ impl<'a> Averaging<'a> {
         }
     }
 
-    /// Ends the plateau.
+    /// Ends the plateau, with `samples` for the parts that are still open.
     ///
     /// # Errors
-    /// [`ReductionError::Unsteady`] without samples.
-    pub fn finish(self) -> Result<PlateauFit, ReductionError> {
+    /// [`ReductionError`] if the samples are not steady, or do not separate the mean from the once-per-revolution term.
+    pub fn finish(mut self, samples: RecordSlice) -> Result<PlateauFit, ReductionError> {
+        while !self.open.is_empty() {
+            self.add(samples, 0);
+        }
+        self.refused.map_or(Ok(()), Err)?;
         let Self { window: Window { span: window, shape }, blocks, fitted, left_out, .. } = self;
         let none = ReductionError::Unsteady { index: self.index, window: *window, samples: 0, good: 0 };
         let (triangle, coefficients) = self.fit.ok_or(none)?;
@@ -170,14 +199,13 @@ impl<'a> Averaging<'a> {
 impl ReducedMounting {
     /// The mounting of located plateaus, averaged, in the order of the schedule.
     pub fn new(located: Located, plateaus: Vec<PlateauFit>) -> Self {
-        let Located { speeds, settling_time, clock_offset, agreement, readings, unscheduled, .. } = located;
-        Self { plateaus, speeds, settling_time, clock_offset, agreement, readings, unscheduled }
+        let Located { timing, settling_time, unscheduled, .. } = located;
+        Self { plateaus, timing, settling_time, unscheduled }
     }
 
     /// A record of rests, those that are steady.
     pub(super) fn of_rests(located: Located, rests: Vec<PlateauFit>) -> Self {
-        let count = rests.len();
-        Self { speeds: vec![None; count], readings: vec![None; count], ..Self::new(located, rests) }
+        Self { timing: Timing::unknown(rests.len()), ..Self::new(located, rests) }
     }
 
     /// Number of its plateaus.
@@ -197,17 +225,17 @@ impl ReducedMounting {
 
     /// The centrifuge's clock against the unit's; `None` without telemetry, or if no ramp is in both.
     pub fn clock_offset(&self) -> Option<ClockOffset> {
-        self.clock_offset
+        self.timing.clock_offset
     }
 
     /// How the ramps of the telemetry, or of the counter of revolutions, agree with those of the record.
     pub fn clock_agreement(&self) -> Option<ClockAgreement> {
-        self.agreement
+        self.timing.agreement
     }
 
     /// The speed of each plateau as the telemetry or the counter shows it, in the order of the schedule.
     pub fn speed_readings(&self) -> &[Option<SpeedReading>] {
-        &self.readings
+        &self.timing.readings
     }
 }
 

@@ -27,6 +27,6 @@ impl ReducedMounting {
             measured_speed: *speed,
             ..mean(plateau, noise, &step, &noise.own_scale(plateau, &cosines))
         };
-        self.plateaus.par_iter().zip(&self.speeds).map(mean).collect()
+        self.plateaus.par_iter().zip(&self.timing.speeds).map(mean).collect()
     }
 }

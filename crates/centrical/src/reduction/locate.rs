@@ -28,6 +28,25 @@ pub(super) use shape::{Interval, Shape, TURNING};
 pub use tachometer::{PulseTrain, SpeedReading};
 pub(super) use window::Window;
 
+/// What telemetry or a counter of revolutions says of the plateaus of a record.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Timing {
+    pub clock_offset: Option<ClockOffset>,
+    /// How the ramps agree with those of the record; `None` where nothing shows the speeds.
+    pub agreement: Option<ClockAgreement>,
+    /// Median speed on each plateau by the telemetry [rad/s].
+    pub speeds: Vec<Option<f64>>,
+    /// Speed on each plateau with its scatter.
+    pub readings: Vec<Option<SpeedReading>>,
+}
+
+impl Timing {
+    /// Of plateaus whose speeds nothing shows.
+    pub fn unknown(plateaus: usize) -> Self {
+        Self { speeds: vec![None; plateaus], readings: vec![None; plateaus], ..Self::default() }
+    }
+}
+
 /// Most samples of a part of a window.
 const PART: f64 = 1e6;
 
@@ -39,13 +58,7 @@ pub struct Located {
     pub(super) windows: Vec<Window>,
     /// Time constant of the settling, common to the mounting [s].
     pub(super) settling_time: Option<f64>,
-    /// Speed on each plateau by the telemetry [rad/s].
-    pub(super) speeds: Vec<Option<f64>>,
-    pub(super) clock_offset: Option<ClockOffset>,
-    /// How the telemetry agrees with the record; `None` without telemetry.
-    pub(super) agreement: Option<ClockAgreement>,
-    /// Speed on each plateau with its scatter, by the telemetry or the counter of revolutions.
-    pub(super) readings: Vec<Option<SpeedReading>>,
+    pub(super) timing: Timing,
     /// Plateaus that the schedule does not have, from and to [s].
     pub(super) unscheduled: Vec<[f64; 2]>,
     /// Schedule and ramps of the record.
@@ -54,47 +67,17 @@ pub struct Located {
 }
 
 impl Survey {
-    /// Finds the scheduled plateaus of a surveyed record; telemetry adds the offset of its clock and the measured speeds.
+    /// Finds the scheduled plateaus of a surveyed record.
     ///
     /// # Errors
     /// [`ReductionError`] if the record is too short, a scheduled plateau is not in it, or a recording mistake explains it better.
-    pub fn locate(
-        &self,
-        telemetry: Option<&SpeedTrace>,
-        schedule: &[ScheduledPlateau],
-    ) -> Result<Located, ReductionError> {
+    pub fn locate(&self, schedule: &[ScheduledPlateau]) -> Result<Located, ReductionError> {
         let blocks = self.blocks()?;
         let align::Aligned { cores, unscheduled } = align::align(&blocks, schedule)?;
         let ramps = clock::Ramp::all(&blocks, schedule, &cores);
-        let (clock_offset, agreement) = match telemetry {
-            Some(telemetry) => {
-                let (offset, agreement) = clock::compare(&ramps, blocks.width, schedule, telemetry);
-                (offset, Some(agreement))
-            }
-            None => (None, None),
-        };
         let window::Windows { plateaus: windows, settling_time } = window::refine(&blocks, schedule, &cores)?;
-        let speed = |window: &Window| clock::median_speed(telemetry?, clock_offset.as_ref()?, window.span);
-        let speeds = windows.iter().map(speed).collect();
-        let readings = vec![None; schedule.len()];
-        let schedule = schedule.to_vec();
-        let mut located = Located {
-            blocks,
-            windows,
-            settling_time,
-            speeds,
-            clock_offset,
-            agreement,
-            readings,
-            unscheduled,
-            schedule,
-            ramps,
-        };
-        if let (Some(telemetry), Some(offset), true) = (telemetry, clock_offset, located.is_of_the_record()) {
-            let (margin, step) = (located.margin(&telemetry.t), telemetry.step());
-            located.read(|window| telemetry.speed(&offset, window, margin, step));
-        }
-        Ok(located)
+        let (timing, schedule) = (Timing::unknown(schedule.len()), schedule.to_vec());
+        Ok(Located { blocks, windows, settling_time, timing, unscheduled, schedule, ramps })
     }
 
     /// Finds the rests of a surveyed record without a schedule: wherever the unit stood still. With `turning`, what turns slowly between them
@@ -142,10 +125,7 @@ impl Located {
         let schedule = cores.iter().map(|(_, core)| ScheduledPlateau { omega: 0.0, nominal_z: blocks.level(core) });
         Self {
             schedule: schedule.collect(),
-            speeds: vec![None; windows.len()],
-            readings: vec![None; windows.len()],
-            clock_offset: None,
-            agreement: None,
+            timing: Timing::unknown(windows.len()),
             unscheduled: Vec::new(),
             ramps: Vec::new(),
             blocks,
@@ -153,29 +133,45 @@ impl Located {
             settling_time: None,
         }
     }
-}
-impl Located {
-    /// Takes the speeds of the plateaus from a counter of revolutions, in place of those of the telemetry; its clock is found
-    /// by the ramps.
+
+    /// Takes the speeds of the plateaus from telemetry; its clock is found by the ramps.
+    pub fn time_telemetry(&mut self, telemetry: &SpeedTrace) {
+        let offset = self.compare(telemetry);
+        self.timing.clock_offset = offset;
+        if let Some(offset) = offset.filter(|_| self.is_of_the_record()) {
+            let (margin, step) = (self.margin(&telemetry.t), telemetry.step());
+            let median = |window: &Window| clock::median_speed(telemetry, &offset, window.span);
+            self.timing.speeds = self.windows.iter().map(median).collect();
+            self.read(|window| telemetry.speed(&offset, window, margin, step));
+        }
+    }
+
+    /// The same from a counter of revolutions.
     pub fn time_pulses(&mut self, pulses: &PulseTrain) {
-        let (offset, agreement) = clock::compare(&self.ramps, self.blocks.width, &self.schedule, &pulses.trace());
-        self.agreement = Some(agreement);
-        self.readings.fill(None);
-        if let Some(offset) = offset.filter(|_| agreement.is_of_the_record()) {
-            self.clock_offset = Some(offset);
+        let offset = self.compare(&pulses.trace());
+        if let Some(offset) = offset.filter(|_| self.is_of_the_record()) {
+            self.timing.clock_offset = Some(offset);
             let margin = self.margin(&[]);
             self.read(|window| pulses.speed(&offset, window, margin));
         }
     }
 
+    /// Compares the clock of a trace of speeds with that of the record.
+    fn compare(&mut self, trace: &SpeedTrace) -> Option<ClockOffset> {
+        let (offset, agreement) = clock::compare(&self.ramps, self.blocks.width, &self.schedule, trace);
+        self.timing.agreement = Some(agreement);
+        offset
+    }
+
     fn is_of_the_record(&self) -> bool {
-        self.agreement.is_some_and(|agreement| agreement.is_of_the_record())
+        self.timing.agreement.is_some_and(|agreement| agreement.is_of_the_record())
     }
 
     /// The speeds of all plateaus that spin.
     fn read(&mut self, speed: impl Fn(&Window) -> Option<SpeedReading>) {
         let spinning = self.windows.iter().zip(&self.schedule);
-        self.readings = spinning.map(|(window, plateau)| speed(window).filter(|_| plateau.omega != 0.0)).collect();
+        self.timing.readings =
+            spinning.map(|(window, plateau)| speed(window).filter(|_| plateau.omega != 0.0)).collect();
     }
 
     /// What the offset of the clocks leaves uncertain at the ends of a window: a block, and the time between two reports [s].
@@ -211,7 +207,7 @@ impl Located {
     }
 
     /// The window of a plateau in parts, from and to [s], each short enough to be held in memory.
-    pub fn parts(&self, plateau: usize) -> Vec<[f64; 2]> {
+    pub(super) fn parts(&self, plateau: usize) -> Vec<[f64; 2]> {
         let [from, to] = self.windows[plateau].span;
         let count = whole(((to - from) / (PART * self.blocks.interval)).ceil()).max(1);
         let end = |k: usize| if k == count { to } else { from + (to - from) * (k as f64 / count as f64) };

@@ -4,6 +4,8 @@ use std::ops::AddAssign;
 
 use nalgebra::{Matrix3, Vector3};
 
+use crate::model::Experiment;
+
 /// One plateau of a mounting's schedule.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ScheduledPlateau {
@@ -11,6 +13,14 @@ pub struct ScheduledPlateau {
     pub omega: f64,
     /// Nominal reading [K5.1], instrument axes [m/s^2].
     pub nominal_z: Vector3<f64>,
+}
+
+impl ScheduledPlateau {
+    /// The plateaus of a mounting in their order.
+    pub fn of_mounting(experiment: &Experiment, mounting: usize) -> Vec<Self> {
+        let set_points = experiment.set_points.iter().filter(|set_point| set_point.mounting == mounting);
+        set_points.map(|s| Self { omega: s.omega, nominal_z: experiment.nominal(s) }).collect()
+    }
 }
 
 /// The mean reading of one plateau.

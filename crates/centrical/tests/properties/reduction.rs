@@ -338,7 +338,7 @@ fn in_stretches_as_whole() {
             from = to;
         }
         survey.finish();
-        let located = survey.locate(None, &schedule).expect("plateaus are there");
+        let located = survey.locate(&schedule).expect("plateaus are there");
         let windows = located.windows();
         let average =
             |k: usize| located.average(k, record.as_slice().between(windows[k]), 0).expect("a steady plateau");
@@ -360,15 +360,12 @@ fn in_parts_as_whole() {
         let mut survey = Survey::new(&record.t);
         survey.append(survey.condense(record.as_slice()));
         survey.finish();
-        let located = survey.locate(None, &schedule).expect("plateaus are there");
+        let located = survey.locate(&schedule).expect("plateaus are there");
         let of_parts = |(k, [from, to]): (usize, [f64; 2])| {
-            let mut plateau = Averaging::new(&located, k);
             let cuts = [from, from + 0.4 * (to - from), from + 0.75 * (to - from), to];
-            for (i, cut) in cuts.windows(2).enumerate() {
-                let part = [if i == 0 { cut[0] } else { cut[0].next_up() }, cut[1]];
-                plateau.add(part, record.as_slice(), 0).expect("a steady part");
-            }
-            plateau.finish().expect("a steady plateau")
+            let part = |(i, cut): (usize, &[f64])| [if i == 0 { cut[0] } else { cut[0].next_up() }, cut[1]];
+            let parts = cuts.windows(2).enumerate().map(part).collect();
+            Averaging::in_parts(&located, k, parts).finish(record.as_slice()).expect("a steady plateau")
         };
         let averaged = located.windows().into_iter().enumerate().map(of_parts).collect();
         let in_parts = ReducedMounting::new(located, averaged).means(&noise);
@@ -640,7 +637,7 @@ fn a_constant_reading_needs_a_stated_resolution() {
     record.f_z[2].fill(9.84);
     let reduced = |resolution: f64| -> Result<(), ReductionError> {
         let survey = Survey::of(record.as_slice())?.with_resolution(resolution);
-        let located = survey.locate(None, &run.schedule())?;
+        let located = survey.locate(&run.schedule())?;
         located.average(0, record.as_slice(), 0).map(|_| ())
     };
     assert!(matches!(reduced(0.0), Err(ReductionError::Stuck { index: 0, axis: 2, .. })), "{:?}", reduced(0.0));

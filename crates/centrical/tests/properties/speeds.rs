@@ -2,7 +2,7 @@
 
 use centrical::ThirdPosition;
 use centrical::plan::{Noise, Prediction, ReadingRange};
-use centrical::reduction::{MeasuredSpeed, PulseTrain, Record, ReducedMounting, ScheduledPlateau, SpeedTrace};
+use centrical::reduction::{MeasuredSpeed, PulseTrain, Record, ReducedMounting, ScheduledPlateau, SpeedTrace, Survey};
 use centrical::simulate::{Counter, Equipment, Machine, Recorder, Sensor, Simulation, Tachometer};
 use centrical::uncertainty::{Extent, Level, ShownSpeed, StatedSpeeds};
 use centrical::{Calibration, Data, Experiment, MeasurementModel, Observation, PairRelation, SetPoint, Weight};
@@ -56,11 +56,11 @@ fn reduced(model: &MeasurementModel, simulation: &Simulation, m: usize, counted:
         whole.f_z.iter_mut().zip(stretch.f_z).for_each(|(column, values)| column.extend(values));
         whole
     });
-    let of_mounting = experiment.set_points.iter().filter(|s| s.mounting == m);
-    let schedule: Vec<ScheduledPlateau> =
-        of_mounting.map(|s| ScheduledPlateau { omega: s.omega, nominal_z: experiment.nominal(s) }).collect();
+    let schedule = ScheduledPlateau::of_mounting(experiment, m);
     if let Some(per_revolution) = counted {
-        return record.reduce_counted(&PulseTrain { t: mounting.pulses(), per_revolution }, &schedule).unwrap();
+        let mut located = Survey::of(record.as_slice()).unwrap().locate(&schedule).unwrap();
+        located.time_pulses(&PulseTrain { t: mounting.pulses(), per_revolution });
+        return located.averaged(record.as_slice()).unwrap();
     }
     let telemetry = mounting.telemetry();
     record.reduce(Some(&SpeedTrace { t: telemetry.t, omega: telemetry.omega }), &schedule).unwrap()

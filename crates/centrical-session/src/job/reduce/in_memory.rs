@@ -6,11 +6,9 @@ use centrical::reduction::{PulseTrain, Record, ReducedMounting, SpeedTrace, Surv
 use centrical::{OnProgress, advance};
 use rayon::prelude::*;
 
-use super::instead::fits_instead;
-use super::mounting::{OfRecord, counts_pulses};
+use super::mounting::{OfRecord, ShownSpeeds, counts_pulses, located};
 use super::pooling::pooled;
 use super::rests::with_all_rests;
-use super::schedule::schedule;
 use crate::error::{Error, Place};
 use crate::experiment::Session;
 use crate::record::RecordOverview;
@@ -67,15 +65,10 @@ fn reduce_mounting(
     let refused = |source| Error::reduction(&session.file, number, source);
     let survey = Survey::of(record.as_slice()).map_err(refused)?.with_resolution(session.type_b.resolution);
     advance(progress, 0)?;
-    let schedule = schedule(&session.experiment, number);
-    let mut located = survey.locate(telemetry.as_ref(), &schedule).map_err(|source| {
-        let instead = fits_instead(session, number, &survey, &source);
-        refused(source).with_instead(instead)
-    })?;
-    if let Some(t) = pulses.filter(|_| counts_pulses(session)) {
-        located.time_pulses(&PulseTrain { t, per_revolution: session.pulses_per_revolution() });
-    }
-    let means = (0..schedule.len()).map(|plateau| {
+    let counted = pulses.filter(|_| counts_pulses(session));
+    let pulses = counted.map(|t| PulseTrain { t, per_revolution: session.pulses_per_revolution() });
+    let located = located(session, number, &session.file, &survey, &ShownSpeeds { telemetry, pulses })?;
+    let means = (0..located.windows().len()).map(|plateau| {
         advance(progress, 0)?;
         located.average(plateau, record.as_slice(), 0).map_err(refused)
     });

@@ -4,7 +4,6 @@ use centrical::Experiment;
 use centrical::reduction::{ReductionError, ScheduledPlateau, Survey};
 use nalgebra::{Matrix3, Vector3};
 
-use super::schedule::schedule;
 use crate::error::Instead;
 use crate::experiment::{Session, axes_text};
 
@@ -20,7 +19,7 @@ pub(crate) fn fits_instead(
         return None;
     }
     let experiment = &session.experiment;
-    let likelihood = |schedule: Vec<ScheduledPlateau>| survey.locate(None, &schedule).ok()?.log_likelihood();
+    let likelihood = |schedule: Vec<ScheduledPlateau>| survey.locate(&schedule).ok()?.log_likelihood();
     let all = mountings(experiment, number).chain(places(experiment, number)).chain(attitudes(experiment, number));
     let fit = all.filter_map(|(instead, schedule)| Some((instead, likelihood(schedule)?)));
     let likelier = |best: (Instead, f64), next: (Instead, f64)| if next.1 > best.1 { next } else { best };
@@ -34,7 +33,7 @@ fn mountings(experiment: &Experiment, number: usize) -> impl Iterator<Item = (In
     all.iter().enumerate().filter(move |(k, _)| is_other(*k)).map(|(other, mounting)| {
         let position = experiment.positions[mounting.position].id.clone();
         let instead = Instead::Mounting { number: other + 1, position, arm: mounting.arm_y.into() };
-        (instead, schedule(experiment, other))
+        (instead, ScheduledPlateau::of_mounting(experiment, other))
     })
 }
 
@@ -47,7 +46,7 @@ fn places(experiment: &Experiment, number: usize) -> impl Iterator<Item = (Inste
         let arm_y = all[other].arm_y;
         let mut experiment = experiment.clone();
         experiment.mountings[number].arm_y = arm_y;
-        (Instead::Arm { arm: arm_y.into() }, schedule(&experiment, number))
+        (Instead::Arm { arm: arm_y.into() }, ScheduledPlateau::of_mounting(&experiment, number))
     })
 }
 
@@ -62,6 +61,6 @@ fn attitudes(experiment: &Experiment, number: usize) -> impl Iterator<Item = (In
         let position = experiment.mountings[number].position;
         experiment.positions[position].p_zy = p_zy;
         let axes = axes_text(&rows.map(|row| (row.iamax(), row.sum())));
-        (Instead::Attitude { axes }, schedule(&experiment, number))
+        (Instead::Attitude { axes }, ScheduledPlateau::of_mounting(&experiment, number))
     })
 }

@@ -1,10 +1,11 @@
 //! A mounting's record in two passes: where its plateaus are, then what they read.
 
+use std::path::Path;
+
 use centrical::OnProgress;
-use centrical::reduction::{PulseTrain, ReducedMounting};
+use centrical::reduction::{Located, PulseTrain, ReducedMounting, ScheduledPlateau, SpeedTrace, Survey};
 
 use super::instead::fits_instead;
-use super::schedule::schedule;
 use crate::error::Error;
 use crate::experiment::{Session, SpeedSource};
 use crate::record::{RecordFile, RecordOverview, SampleCache};
@@ -29,18 +30,50 @@ pub(super) fn reduce_mounting(
     let refused = |source| Error::reduction(file, number, source);
     let (survey, interpolated) = record.survey(cache)?;
     let survey = survey.with_resolution(session.type_b.resolution);
-    let telemetry = session.telemetry(number)?;
-    let located = survey.locate(telemetry.as_ref(), &schedule(&session.experiment, number));
-    let mut located = located.map_err(|source| {
-        let instead = fits_instead(session, number, &survey, &source);
-        refused(source).with_instead(instead)
-    })?;
-    if let Some(pulses) = counted_pulses(session, number)? {
-        located.time_pulses(&pulses);
-    }
+    let speeds = ShownSpeeds { telemetry: session.telemetry(number)?, pulses: counted_pulses(session, number)? };
+    let located = located(session, number, file, &survey, &speeds)?;
     let means = record.means(cache, &located)?.into_iter().collect::<Result<_, _>>().map_err(refused)?;
     let overview = RecordOverview::of(number + 1, &survey.extremes().collect::<Vec<_>>());
     Ok(OfRecord { reduced: ReducedMounting::new(located, means), overview, interpolated })
+}
+
+/// What shows the speeds of a mounting.
+#[derive(Default)]
+pub(crate) struct ShownSpeeds {
+    pub telemetry: Option<SpeedTrace>,
+    pub pulses: Option<PulseTrain>,
+}
+
+impl ShownSpeeds {
+    /// Takes the speeds of the plateaus from the pulses, otherwise from the telemetry.
+    pub fn time(&self, located: &mut Located) {
+        if let Some(telemetry) = &self.telemetry {
+            located.time_telemetry(telemetry);
+        }
+        if let Some(pulses) = &self.pulses {
+            located.time_pulses(pulses);
+        }
+    }
+}
+
+/// Finds the plateaus of a mounting in the survey of its record, with the speeds that are shown.
+///
+/// # Errors
+/// [`Error`] names the `file` and, where a plateau is missing, what the record fits instead.
+pub(crate) fn located(
+    session: &Session,
+    number: usize,
+    file: &Path,
+    survey: &Survey,
+    speeds: &ShownSpeeds,
+) -> Result<Located, Error> {
+    let located = survey.locate(&ScheduledPlateau::of_mounting(&session.experiment, number));
+    let mut located = located.map_err(|source| {
+        let instead = fits_instead(session, number, survey, &source);
+        Error::reduction(file, number, source).with_instead(instead)
+    })?;
+    speeds.time(&mut located);
+    Ok(located)
 }
 
 /// The pulses of a mounting, where they measure the speed.
@@ -56,7 +89,7 @@ pub(super) fn counts_pulses(session: &Session) -> bool {
 #[cfg(test)]
 mod tests {
     use std::fs::{self, File};
-    use std::path::{Path, PathBuf};
+    use std::path::PathBuf;
 
     use centrical::unwatched;
     use flate2::{Compression, write::GzEncoder};

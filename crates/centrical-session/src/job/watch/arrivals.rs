@@ -18,7 +18,7 @@ use super::growth::Growth;
 use super::rests;
 use crate::error::Error;
 use crate::experiment::{PlateauMean, Session, SpeedSource};
-use crate::job::reduce::{fits_instead, refuse_copies, schedule};
+use crate::job::reduce::{ShownSpeeds, located, refuse_copies};
 
 /// A session folder that is looked into again and again.
 ///
@@ -231,7 +231,7 @@ impl<'s> Watch<'s> {
             Err(error) => return Err(error),
             Ok(None) => {}
             Ok(Some((reduced, complete))) => {
-                let scheduled = self.schedule(mounting).len();
+                let scheduled = ScheduledPlateau::of_mounting(&self.session.experiment, mounting).len();
                 if let Some(growth) = &mut self.growth {
                     growth.find(&reduced, scheduled);
                 }
@@ -278,21 +278,26 @@ impl<'s> Watch<'s> {
 
     /// All plateaus of a finished mounting.
     fn whole(&self, mounting: usize, record: &Record) -> Result<(ReducedMounting, usize), Error> {
-        let schedule = self.schedule(mounting);
-        let reduced = self.reduced(mounting, record, &schedule).map_err(|source| {
-            let survey = Survey::of(record.as_slice()).ok();
-            let instead = survey.and_then(|survey| fits_instead(self.session, mounting, &survey, &source));
-            self.refused(mounting, source).with_instead(instead)
-        })?;
-        Ok((reduced, schedule.len()))
+        let file = self.record_file(mounting);
+        let survey = self.survey(record).map_err(|source| Error::reduction(file, mounting, source))?;
+        let located = located(self.session, mounting, file, &survey, &self.shown_speeds(mounting))?;
+        let count = located.windows().len();
+        let reduced = located.averaged(record.as_slice());
+        Ok((reduced.map_err(|source| Error::reduction(file, mounting, source))?, count))
     }
 
     /// The plateaus that a growing record shows, and how many of them have come to their end.
     fn begun(&self, mounting: usize, record: &Record) -> Result<Option<(ReducedMounting, usize)>, Error> {
-        let schedule = self.schedule(mounting);
+        let schedule = ScheduledPlateau::of_mounting(&self.session.experiment, mounting);
+        let speeds = self.shown_speeds(mounting);
+        let reduced = |schedule: &[ScheduledPlateau]| {
+            let mut located = self.survey(record)?.locate(schedule)?;
+            speeds.time(&mut located);
+            located.averaged(record.as_slice())
+        };
         let mut count = schedule.len();
         while count > 0 {
-            match self.reduced(mounting, record, &schedule[..count]) {
+            match reduced(&schedule[..count]) {
                 Ok(reduced) => return Ok(Some((reduced, over(&schedule[..count])))),
                 Err(
                     ReductionError::PlateauNotFound { index, .. }
@@ -300,31 +305,30 @@ impl<'s> Watch<'s> {
                     | ReductionError::Unsteady { index, .. },
                 ) => count = index.min(count - 1),
                 Err(ReductionError::TooShort { .. } | ReductionError::TimeStands { .. }) => return Ok(None),
-                Err(source) => return Err(self.refused(mounting, source)),
+                Err(source) => return Err(Error::reduction(self.record_file(mounting), mounting, source)),
             }
         }
         Ok(None)
     }
 
-    /// Reduces a record with the speeds that are measured or witnessed, as far as their file has come.
-    fn reduced(
-        &self,
-        mounting: usize,
-        record: &Record,
-        schedule: &[ScheduledPlateau],
-    ) -> Result<ReducedMounting, ReductionError> {
+    fn survey(&self, record: &Record) -> Result<Survey, ReductionError> {
+        Ok(Survey::of(record.as_slice())?.with_resolution(self.session.type_b.resolution))
+    }
+
+    /// The speeds that are measured or witnessed, as far as their file has come.
+    fn shown_speeds(&self, mounting: usize) -> ShownSpeeds {
         let measured = self.session.speeds.measured;
         // What is not there yet, or not whole, is read when the session is calibrated at its end.
         match measured.map_or(SpeedSource::Telemetry, |measured| measured.source) {
             SpeedSource::Telemetry => {
                 let telemetry = self.session.telemetry_to(mounting, Extent::Growing).ok().flatten();
-                record.reduce(telemetry.as_ref(), schedule)
+                ShownSpeeds { telemetry, pulses: None }
             }
-            SpeedSource::Pulses => match self.session.pulses_to(mounting, Extent::Growing).ok().flatten() {
-                Some(pulses) => record.reduce_counted(&pulses, schedule),
-                None => record.reduce(None, schedule),
-            },
-            SpeedSource::Plateaus => record.reduce(None, schedule),
+            SpeedSource::Pulses => {
+                let pulses = self.session.pulses_to(mounting, Extent::Growing).ok().flatten();
+                ShownSpeeds { telemetry: None, pulses }
+            }
+            SpeedSource::Plateaus => ShownSpeeds::default(),
         }
     }
 
@@ -362,13 +366,8 @@ impl<'s> Watch<'s> {
         there.zip(means).map(observation).collect()
     }
 
-    fn schedule(&self, mounting: usize) -> Vec<ScheduledPlateau> {
-        schedule(&self.session.experiment, mounting)
-    }
-
-    fn refused(&self, mounting: usize, source: ReductionError) -> Error {
-        let file = self.session.mountings[mounting].record.clone().unwrap_or_default();
-        Error::reduction(&file, mounting, source)
+    fn record_file(&self, mounting: usize) -> &Path {
+        self.session.mountings[mounting].record.as_deref().unwrap_or(Path::new(""))
     }
 }
 
