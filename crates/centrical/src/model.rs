@@ -33,7 +33,7 @@ mod single_rest;
 mod stated;
 pub(crate) mod whitening;
 
-pub use effect::{Course, Effect, Law, Scope};
+pub use effect::{Course, Effect, Law};
 pub use error::FitError;
 pub use error_model::{ErrorModel, Extra, Term};
 pub use experiment::{

@@ -3,7 +3,7 @@
 
 use centrical_compensate::Monomial;
 
-use super::experiment::STANDARD_GRAVITY;
+use super::experiment::{Experiment, STANDARD_GRAVITY};
 
 /// An effect on the readings, per unit of its size. Axes are 0, 1, 2.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -139,15 +139,33 @@ pub enum Effect {
     },
 }
 
-/// Plateaus that an effect acts on.
+/// Where an effect acts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Scope {
-    /// All.
+    /// On all plateaus.
     Session,
-    /// Those of a mounting, by its index.
+    /// In a position, by its index.
+    Position(usize),
+    /// On a seat, by its first mounting.
+    Seat(usize),
+    /// In a mounting, by its index.
     Mounting(usize),
-    /// The rests of a switch-on, by its number.
+    /// In the rests of a switch-on, by its number.
     SwitchOn(usize),
+}
+
+impl Scope {
+    /// Whether a mounting is in it.
+    pub(crate) fn has(self, experiment: &Experiment, mounting: usize) -> bool {
+        let position = experiment.mountings[mounting].position;
+        match self {
+            Self::Session => true,
+            Self::Position(k) => k == position,
+            Self::Seat(seat) => seat == experiment.seat_of(mounting),
+            Self::Mounting(m) => m == mounting,
+            Self::SwitchOn(number) => number == experiment.positions[position].switch_on.number,
+        }
+    }
 }
 
 /// What a disturbance follows.
@@ -175,7 +193,7 @@ pub enum Course {
     Rise,
     /// The specific force of the plateaus before, each half as much as the next.
     Memory,
-    /// +1 where `f_i` rose since the plateau before, -1 where it fell: hysteresis.
+    /// Sense of the change of `f_i` since the plateau before, `d / hypot(d, 0.05 g)`: hysteresis.
     Turn,
 }
 
@@ -255,30 +273,29 @@ impl Effect {
         }
     }
 
-    /// Whether it belongs to a position.
-    pub(crate) fn is_of_position(self) -> bool {
+    /// Where it acts.
+    pub(crate) fn scope(self) -> Scope {
         match self {
-            Self::ElasticTurn { .. }
-            | Self::PositionTurn { .. }
-            | Self::SpinTurn { .. }
-            | Self::RestTilt { .. }
-            | Self::PositionShift { .. } => true,
+            Self::ElasticTurn { position, .. }
+            | Self::PositionTurn { position, .. }
+            | Self::SpinTurn { position, .. }
+            | Self::RestTilt { position, .. }
+            | Self::PositionShift { position, .. } => Scope::Position(position),
+            Self::MountingTurn { mounting, .. }
+            | Self::MountingTilt { mounting, .. }
+            | Self::MountingShift { mounting, .. } => Scope::Mounting(mounting),
+            Self::ArmStretch { seat, .. } | Self::SeatPlace { seat, .. } => seat.map_or(Scope::Session, Scope::Seat),
+            Self::Turning { switch_on, .. } => Scope::SwitchOn(switch_on),
+            Self::Monomial { scope, .. } => scope,
             Self::ArmTurn { .. }
-            | Self::MountingTurn { .. }
-            | Self::MountingTilt { .. }
-            | Self::ArmStretch { .. }
             | Self::RadiusScale
-            | Self::SeatPlace { .. }
-            | Self::MountingShift { .. }
             | Self::Coordinate { .. }
             | Self::SpeedScale
             | Self::OneSpeed { .. }
             | Self::Gravity
             | Self::Latitude
-            | Self::Monomial { .. }
             | Self::Disturbance { .. }
-            | Self::Turning { .. }
-            | Self::Rounding { .. } => false,
+            | Self::Rounding { .. } => Scope::Session,
         }
     }
 }

@@ -1,6 +1,6 @@
 //! What an unknown is in the measurement model.
 
-use super::effect::Effect;
+use super::effect::{Effect, Scope};
 
 /// What a parameter is in the measurement model. Axes are 0, 1, 2.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -44,7 +44,7 @@ impl Kind {
     pub(crate) fn is_of_position(self) -> bool {
         match self {
             Self::Turn { .. } | Self::Shift { .. } | Self::Attitude { .. } => true,
-            Self::Effect(effect) => effect.is_of_position(),
+            Self::Effect(effect) => matches!(effect.scope(), Scope::Position(_)),
             Self::Tilt(_) | Self::CaseTurn(_) | Self::ProofMass(_) | Self::Term(_) => false,
         }
     }

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::effect::{Course, Effect, Scope};
+use super::effect::{Course, Effect};
 use super::experiment::{SetPoint, Site};
 use super::measurement::MeasurementModel;
 use super::nominal::Nominal;
@@ -31,37 +31,30 @@ impl MeasurementModel {
     /// How one unit of `effect` enters a plateau.
     pub(super) fn share(&self, set_point: &SetPoint, effect: Effect) -> Share {
         let experiment = &self.experiment;
-        let (here, position) = (set_point.mounting, experiment.mountings[set_point.mounting].position);
-        let r0_y = experiment.arm_of(set_point);
-        let omega_squared = set_point.omega * set_point.omega;
-        let is_on = |seat: Option<usize>| seat.is_none_or(|seat| seat == experiment.seat_of(here));
-        let only = |condition: bool, share: Share| if condition { share } else { Share::None };
-        let along = |axis: usize| Vector3::ith(axis, 1.0);
-        if !experiment.is_on_arm(here) && effect.is_of_arm() {
+        let here = set_point.mounting;
+        let is_off_arm = effect.is_of_arm() && !experiment.is_on_arm(here);
+        if is_off_arm || !effect.scope().has(experiment, here) {
             return Share::None;
         }
+        let r0_y = experiment.arm_of(set_point);
+        let omega_squared = set_point.omega * set_point.omega;
+        let only = |condition: bool, share: Share| if condition { share } else { Share::None };
+        let along = |axis: usize| Vector3::ith(axis, 1.0);
         match effect {
-            Effect::ElasticTurn { law, axis, position: k } => {
-                only(k == position, Share::Turn(Vector3::ith(axis, law.value(omega_squared, r0_y.x))))
-            }
+            Effect::ElasticTurn { law, axis, .. } => Share::Turn(Vector3::ith(axis, law.value(omega_squared, r0_y.x))),
             Effect::ArmTurn { law, axis } => {
                 let turn_y = Vector3::ith(axis, law.value(omega_squared, r0_y.x));
                 Share::Turn(experiment.position_of(set_point).p_zy * turn_y)
             }
-            Effect::PositionTurn { axis, position: k } => only(k == position, Share::Turn(along(axis))),
-            Effect::SpinTurn { axis, position: k } => {
-                only(k == position && !set_point.is_rest(), Share::Turn(along(axis)))
-            }
-            Effect::MountingTurn { axis, mounting } => only(mounting == here, Share::Turn(along(axis))),
-            Effect::MountingTilt { axis, mounting } => only(mounting == here && set_point.is_rest(), Share::Tilt(axis)),
-            Effect::RestTilt { axis, position: k } => only(k == position, Share::Tilt(axis)),
-            Effect::ArmStretch { law, seat } => {
-                only(is_on(seat), Share::Arm(Vector3::x() * (r0_y.x * law.value(omega_squared, r0_y.x))))
-            }
+            Effect::PositionTurn { axis, .. } | Effect::MountingTurn { axis, .. } => Share::Turn(along(axis)),
+            Effect::SpinTurn { axis, .. } => only(!set_point.is_rest(), Share::Turn(along(axis))),
+            Effect::MountingTilt { axis, .. } => only(set_point.is_rest(), Share::Tilt(axis)),
+            Effect::RestTilt { axis, .. } => Share::Tilt(axis),
+            Effect::ArmStretch { law, .. } => Share::Arm(Vector3::x() * (r0_y.x * law.value(omega_squared, r0_y.x))),
             Effect::RadiusScale => Share::Arm(*r0_y),
-            Effect::SeatPlace { axis, seat } => only(is_on(seat), Share::Arm(along(axis))),
-            Effect::PositionShift { axis, position: k } => only(k == position, Share::Arm(along(axis))),
-            Effect::MountingShift { axis, mounting } => only(mounting == here, Share::Arm(along(axis))),
+            Effect::SeatPlace { axis, .. }
+            | Effect::PositionShift { axis, .. }
+            | Effect::MountingShift { axis, .. } => Share::Arm(along(axis)),
             Effect::Coordinate { coordinate, mass } => Share::Coordinate { coordinate, mass },
             Effect::SpeedScale => Share::Rate(omega_squared),
             Effect::OneSpeed { first } => {
@@ -72,23 +65,16 @@ impl MeasurementModel {
                 let cosine = experiment.site.latitude.map_or(0.0, f64::cos);
                 Share::Rate(set_point.omega * 2.0 * Site::EARTH_RATE * cosine)
             }
-            Effect::Monomial { axis, monomial, scope } => {
-                let value = || monomial.value(experiment.nominal(set_point).into());
-                let is_here = match scope {
-                    Scope::Session => true,
-                    Scope::Mounting(mounting) => mounting == here,
-                    Scope::SwitchOn(number) => experiment.positions[position].switch_on.number == number,
-                };
-                if is_here { Share::Reading(Vector3::ith(axis, value())) } else { Share::None }
+            Effect::Monomial { axis, monomial, .. } => {
+                Share::Reading(Vector3::ith(axis, monomial.value(experiment.nominal(set_point).into())))
             }
             Effect::Disturbance { axis, follows } => {
                 Share::Reading(Vector3::ith(axis, self.course(set_point, axis, follows)))
             }
-            Effect::Turning { axis, switch_on } => {
-                let position = &experiment.positions[position];
+            Effect::Turning { axis, .. } => {
                 // Only the acceleration along the vertical counts: that across it turns the specific force.
-                let up_z = position.p_zy.column(2) * position.bend_z[axis];
-                only(position.switch_on.number == switch_on, Share::Reading(up_z))
+                let position = experiment.position_of(set_point);
+                Share::Reading(position.p_zy.column(2) * position.bend_z[axis])
             }
             Effect::Rounding { axis, first } => {
                 only(set_point.history.repeats == Some(first), Share::Reading(along(axis)))

@@ -55,8 +55,12 @@ impl Study {
 
     fn rest_angles(&self) -> Condition {
         let is_meant = |s: &SetPoint| s.is_rest() && self.is_on_arm(s);
-        let turns = self.read().filter(|s| is_meant(s)).map(|s| s.angle.rem_euclid(std::f64::consts::TAU));
-        let angles = distinct(turns);
+        let mut angles: Vec<f64> = Vec::new();
+        for set_point in self.read().filter(|s| is_meant(s)) {
+            if !angles.iter().any(|angle| at_angle(set_point, *angle)) {
+                angles.push(set_point.angle);
+            }
+        }
         // The angle that is read most is the one that a poorer experiment would keep.
         let kept =
             angles.iter().copied().max_by_key(|a| self.read().filter(|s| is_meant(s) && at_angle(s, *a)).count());

@@ -32,17 +32,6 @@ impl Study {
         Self::of(model, weights, linearisations)
     }
 
-    /// Studies the exact model's design at the unknowns `x`.
-    ///
-    /// # Errors
-    /// As [`Study::at_zero`].
-    pub fn at(model: MeasurementModel, weights: Vec<Weight>, x: &[f64]) -> Result<Self, FitError> {
-        check(&model, &weights)?;
-        let set_points = &model.experiment().set_points;
-        let linearisations = weights.iter().map(|w| model.linearise(&set_points[w.set_point], x)).collect();
-        Self::of(model, weights, linearisations)
-    }
-
     fn of(model: MeasurementModel, weights: Vec<Weight>, linearisations: Vec<Linearisation>) -> Result<Self, FitError> {
         let rows = whitened_rows(&weights, &linearisations, model.parameters().len() + model.influences().len())?;
         if rows.iter().any(|entry| !entry.is_finite()) {

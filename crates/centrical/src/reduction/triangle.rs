@@ -7,7 +7,7 @@ use pulp::{Simd, WithSimd};
 
 use crate::reduction::simd::lanes::{dot, product, subtract, widest};
 
-/// Columns of a design: two of the revolution, settling, constant.
+/// Columns of a design: two of the revolution, settling, constant; in a slow rotation three of the turning, constant.
 pub(super) const TERMS: usize = 4;
 
 /// A remainder of this length, relative to the column, is rounding.

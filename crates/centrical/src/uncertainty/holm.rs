@@ -11,8 +11,8 @@ pub(super) fn holm(probabilities: impl ExactSizeIterator<Item = f64>) -> Vec<f64
     family_wise.collect()
 }
 
-/// The family-wise probabilities of tests in any order (S. Holm, Scandinavian Journal of Statistics 6, 1979): the probability that
-/// the smallest of as many independent tests of true hypotheses is as small.
+/// The family-wise probabilities of tests in any order (S. Holm, Scandinavian Journal of Statistics 6, 1979), whatever their
+/// dependence: what is below a level is wrongly so for any test of a true hypothesis with at most that probability.
 pub fn family_wise(probabilities: &[f64]) -> Vec<f64> {
     let mut order: Vec<usize> = (0..probabilities.len()).collect();
     order.sort_by(|&a, &b| probabilities[a].total_cmp(&probabilities[b]));

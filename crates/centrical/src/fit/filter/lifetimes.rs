@@ -5,7 +5,7 @@
 //! With the experiments ordered by position these are 30 of the source's 49 at a time: 19 fewer, 15 `delta` and
 //! 4 `dR` (source, section 6).
 
-use crate::model::{Effect, Experiment, Kind, MeasurementModel, Scope, SetPoint};
+use crate::model::{Effect, Kind, MeasurementModel, SetPoint};
 
 /// The lifetimes of the unknowns in an order of plateaus.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -117,39 +117,9 @@ fn belongs(model: &MeasurementModel, column: usize, set_point: &SetPoint) -> boo
         Kind::Shift { axis, .. } => {
             model.parameters().shift_of(position).is_some_and(|shift| shift.column + axis == column)
         }
-        Kind::Effect(effect) => acts_on(experiment, effect, set_point.mounting),
+        // Rounding is common to rests that are repeated in one mounting.
+        Kind::Effect(Effect::Rounding { first, .. }) => experiment.set_points[first].mounting == set_point.mounting,
+        Kind::Effect(effect) => effect.scope().has(experiment, set_point.mounting),
         Kind::Tilt(_) | Kind::CaseTurn(_) | Kind::ProofMass(_) | Kind::Term(_) => true,
-    }
-}
-
-/// Whether an effect acts in a mounting.
-fn acts_on(experiment: &Experiment, effect: Effect, here: usize) -> bool {
-    let position = experiment.mountings[here].position;
-    match effect {
-        Effect::ElasticTurn { position: k, .. }
-        | Effect::PositionTurn { position: k, .. }
-        | Effect::SpinTurn { position: k, .. }
-        | Effect::RestTilt { position: k, .. }
-        | Effect::PositionShift { position: k, .. } => k == position,
-        Effect::MountingTurn { mounting, .. }
-        | Effect::MountingTilt { mounting, .. }
-        | Effect::MountingShift { mounting, .. }
-        | Effect::Monomial { scope: Scope::Mounting(mounting), .. } => mounting == here,
-        Effect::Rounding { first, .. } => experiment.set_points[first].mounting == here,
-        Effect::ArmStretch { seat: Some(seat), .. } | Effect::SeatPlace { seat: Some(seat), .. } => {
-            experiment.seat_of(here) == seat
-        }
-        Effect::ArmTurn { .. }
-        | Effect::ArmStretch { seat: None, .. }
-        | Effect::SeatPlace { seat: None, .. }
-        | Effect::RadiusScale
-        | Effect::Coordinate { .. }
-        | Effect::SpeedScale
-        | Effect::OneSpeed { .. }
-        | Effect::Gravity
-        | Effect::Latitude
-        | Effect::Monomial { scope: Scope::Session | Scope::SwitchOn(_), .. }
-        | Effect::Turning { .. }
-        | Effect::Disturbance { .. } => true,
     }
 }
