@@ -1,6 +1,6 @@
 //! Batches of units compared: whether their means differ (B. L. Welch, Biometrika 38, 1951).
 
-use statrs::distribution::{ContinuousCDF, FisherSnedecor};
+use crate::statistics::f_tail;
 
 /// Welch's test of equal means, whatever the scatters of the batches.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -33,7 +33,7 @@ impl BatchTest {
         let doubt: f64 = batches.iter().map(|(n, _, w)| (1.0 - w / total).powi(2) / (n - 1.0)).sum();
         let variance_ratio = between / (1.0 + 2.0 * (k - 2.0) / (k * k - 1.0) * doubt);
         let degrees_of_freedom = [k - 1.0, (k * k - 1.0) / (3.0 * doubt)];
-        let law = FisherSnedecor::new(degrees_of_freedom[0], degrees_of_freedom[1]).ok()?;
-        Some(BatchTest { variance_ratio, degrees_of_freedom, probability: law.sf(variance_ratio) })
+        let probability = f_tail(variance_ratio, degrees_of_freedom[0], degrees_of_freedom[1]);
+        Some(BatchTest { variance_ratio, degrees_of_freedom, probability })
     }
 }

@@ -17,14 +17,13 @@
 use std::mem;
 
 use nalgebra::{DMatrix, DVector};
-use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 use super::law::{Law, Part};
 use super::line::{Curve, Line};
 use super::quantiles::Quantiles;
 use super::series::{Point, Series};
 use crate::linalg::least_squares::LeastSquares;
-use crate::statistics::chi_squared_tail;
+use crate::statistics::{chi_squared_quantiles, chi_squared_tail};
 
 /// The component of variance between sessions, beside the stated one.
 #[derive(Debug, Clone, PartialEq)]
@@ -53,10 +52,9 @@ impl Between {
     pub fn of(series: &[Series], curve: Curve, coverage: f64) -> Option<Self> {
         let mut scatter = Scatter::of(series, curve);
         let nu = scatter.degrees_of_freedom;
-        let law = ChiSquared::new(nu as f64).ok()?;
+        let [low, high] = chi_squared_quantiles(nu as f64, coverage)?;
         let variance = scatter.solution(nu as f64, 0.0)?;
-        let mut end = |probability: f64| scatter.solution(law.inverse_cdf(probability), 0.0);
-        let interval = [end(0.5 + 0.5 * coverage)?, end(0.5 - 0.5 * coverage)?];
+        let interval = [scatter.solution(high, 0.0)?, scatter.solution(low, 0.0)?];
         let misfit = scatter.misfit_and_fall(0.0).0;
         let scale = scatter.misfit_and_fall(variance).0 / nu as f64;
         let probability = chi_squared_tail(misfit, nu);

@@ -1,7 +1,6 @@
 //! Capability of a process against limits: Cp and Cpk (ISO 22514-2).
 
-use statrs::distribution::{ChiSquared, ContinuousCDF};
-
+use crate::statistics::chi_squared_quantiles;
 use crate::uncertainty::Degrees;
 
 /// How a parameter of many units lies between its limits.
@@ -37,11 +36,10 @@ impl Capability {
         let below = lower.map(|lower| (mean - lower) / (3.0 * deviation));
         let above = upper.map(|upper| (upper - mean) / (3.0 * deviation));
         let nearer = [below, above].into_iter().flatten().min_by(f64::total_cmp).filter(|index| index.is_finite())?;
-        let law = ChiSquared::new(nu).ok()?;
+        let quantiles = chi_squared_quantiles(nu, coverage)?;
         let cp = lower.zip(upper).map(|(lower, upper)| {
             let value = (upper - lower) / (6.0 * deviation);
-            let at = |probability: f64| value * (law.inverse_cdf(probability) / nu).sqrt();
-            Index { value, interval: [at(0.5 - 0.5 * coverage), at(0.5 + 0.5 * coverage)] }
+            Index { value, interval: quantiles.map(|quantile| value * (quantile / nu).sqrt()) }
         });
         let doubt = (1.0 / (9.0 * n as f64) + nearer * nearer / (2.0 * nu)).sqrt();
         let half = Degrees::Infinite.coverage_factor(coverage) * doubt;

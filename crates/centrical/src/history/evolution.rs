@@ -5,13 +5,12 @@
 //! more switch-on, `x^T beta + u`. Its law is the mixture of normal laws over the confidence distribution of `tau^2` (K. Nagashima et
 //! al., Statistical Methods in Medical Research 28, 2019). With `v_i = 0` that is Student's t.
 
-use statrs::distribution::{ContinuousCDF, StudentsT};
-
 use super::between::{Between, Likely};
 use super::law::{Law, Part};
 use super::line::{Curve, Line};
 use super::quantiles::Quantiles;
 use super::series::Series;
+use crate::statistics::t_tail;
 use crate::uncertainty::Degrees;
 
 /// An estimate and its law.
@@ -50,15 +49,10 @@ impl Estimated {
         match &self.spread {
             // Sessions that agree to the last digit have no scatter to measure it by.
             Spread::StudentsT(_) if self.value == 0.0 => 1.0,
-            Spread::StudentsT(nu) => student_tail(self.value / self.standard_uncertainty, *nu),
+            Spread::StudentsT(nu) => t_tail(self.value / self.standard_uncertainty, *nu as f64),
             Spread::Law(law) => 2.0 * below(law).min(1.0 - below(law)),
         }
     }
-}
-
-/// Probability of a t of `nu` degrees as far from zero.
-fn student_tail(t: f64, nu: usize) -> f64 {
-    StudentsT::new(0.0, 1.0, nu as f64).map_or(f64::NAN, |law| 2.0 * law.cdf(-t.abs()))
 }
 
 /// The curve of a series, with all that is likely of its component between sessions.

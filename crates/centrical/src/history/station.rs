@@ -9,9 +9,8 @@
 //! Units that come one after another take the course of the machine along with their means: what remains of the spread of times says
 //! how much of a slope could show.
 
-use statrs::distribution::{ContinuousCDF, StudentsT};
-
 use super::succession::succession_probability;
+use crate::statistics::t_tail;
 
 /// A value in one session.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -82,7 +81,9 @@ impl StationTest {
         let slope = times.iter().zip(&values).map(|(t, v)| t * v).sum::<f64>() / spread;
         let rest: f64 = times.iter().zip(&values).map(|(t, v)| (v - slope * t).powi(2)).sum();
         let standard_uncertainty = (rest / nu as f64 / spread).sqrt();
-        let law = StudentsT::new(0.0, 1.0, nu as f64).ok().filter(|_| standard_uncertainty > 0.0)?;
+        if nu == 0 || standard_uncertainty <= 0.0 {
+            return None;
+        }
         let change = largest_change(&values, means)?;
         let (before, after) = values.split_at(change.after);
         let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
@@ -93,7 +94,7 @@ impl StationTest {
             slope,
             standard_uncertainty,
             degrees_of_freedom: nu,
-            slope_probability: 2.0 * law.cdf(-(slope / standard_uncertainty).abs()),
+            slope_probability: t_tail(slope / standard_uncertainty, nu as f64),
             changed_after: instants[change.after - 1],
             change: mean(after) - mean(before),
             change_probability: change.probability,
@@ -162,9 +163,8 @@ fn farthest(values: &[f64], means: usize) -> Option<Farthest> {
     // Part of a deviation that its own mean leaves it.
     let left = 1.0 - means as f64 / n as f64;
     let own = values[place].powi(2) / left;
-    let law = StudentsT::new(0.0, 1.0, freedom).ok()?;
     let t = (own * freedom / (squares - own).max(f64::MIN_POSITIVE)).sqrt();
-    Some(Farthest { place, probability: (2.0 * n as f64 * law.cdf(-t)).min(1.0) })
+    Some(Farthest { place, probability: (n as f64 * t_tail(t, freedom)).min(1.0) })
 }
 
 struct Change {

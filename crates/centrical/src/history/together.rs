@@ -93,7 +93,7 @@ impl Sameness {
                 session,
                 probability: any(chi_squared_tail(fall, blocks[session].len())),
                 probability_of_others: chi_squared_tail(rest, degrees_of_freedom - blocks[session].len()),
-                probability_by_scatter: any(f_tail(fall * of_others as f64 / rest, 1, of_others)),
+                probability_by_scatter: any(f_tail(fall * of_others as f64 / rest, 1.0, of_others as f64)),
             }
         });
         Some(Sameness { chi_squared, degrees_of_freedom, probability, farthest })

@@ -1,9 +1,8 @@
 //! Units of one type over time, with few sessions each: which of them drift, or scatter more than the others.
 
-use statrs::distribution::{ContinuousCDF, FisherSnedecor, StudentsT};
-
 use super::line::{Curve, Line};
 use super::series::Series;
+use crate::statistics::{f_tail, t_tail};
 
 /// One unit beside the others of its type.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -41,17 +40,15 @@ impl UnitTrend {
         let scatter = |(line, nu): &(Line, f64), (misfit, freedom): (f64, f64)| {
             let (others, rest) = (misfit - line.misfit, freedom - nu);
             let ratio = (line.misfit / nu) / (others / rest);
-            let law = FisherSnedecor::new(*nu, rest).ok()?;
-            ratio.is_finite().then(|| (ratio, law.sf(ratio)))
+            ratio.is_finite().then(|| (ratio, f_tail(ratio, *nu, rest)))
         };
         let is_sound =
             |line: &&(Line, f64)| scatter(line, all).is_none_or(|(_, probability)| count * probability > level);
         let (misfit, freedom) = sums(&mut lines.iter().flatten().filter(is_sound));
         let trend = |line: &(Line, f64)| {
             let (variance_ratio, scatter_probability) = scatter(line, all)?;
-            let law = StudentsT::new(0.0, 1.0, freedom).ok()?;
             let standard_uncertainty = (misfit / freedom / line.0.spread).sqrt();
-            let drift_probability = 2.0 * law.cdf(-(line.0.slope / standard_uncertainty).abs());
+            let drift_probability = t_tail(line.0.slope / standard_uncertainty, freedom);
             Some(UnitTrend {
                 slope: line.0.slope,
                 standard_uncertainty,

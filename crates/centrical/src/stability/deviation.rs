@@ -1,12 +1,11 @@
 //! Deviations with their confidence intervals.
 
-use statrs::distribution::{ChiSquared, ContinuousCDF};
-
 use super::error::NoiseError;
 use super::estimator::Estimator;
 use super::phase::Phase;
 use super::power_law::{FollowedLaw, PowerLaw};
 use crate::progress::{OnProgress, Watch};
+use crate::statistics::chi_squared_quantiles;
 
 /// One point of a stability plot.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -89,10 +88,9 @@ impl Phase {
 
 fn interval(value: f64, freedom: f64, confidence: f64) -> (f64, f64) {
     // No freedom, no interval.
-    let Ok(chi_squared) = ChiSquared::new(freedom) else { return (0.0, f64::INFINITY) };
-    let tail = 0.5 * (1.0 - confidence);
-    let end = |probability: f64| value * (freedom / chi_squared.inverse_cdf(probability)).sqrt();
-    (end(1.0 - tail), end(tail))
+    let Some([low, high]) = chi_squared_quantiles(freedom, confidence) else { return (0.0, f64::INFINITY) };
+    let end = |quantile: f64| value * (freedom / quantile).sqrt();
+    (end(high), end(low))
 }
 
 /// Expected variance of a total estimator over that of the one it improves on [SP 1065; for the

@@ -5,7 +5,7 @@ use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 use super::error::NoiseError;
 use crate::progress::{OnProgress, advance};
-use crate::statistics::median;
+use crate::statistics::{chi_squared_quantiles, median};
 
 /// One-sided power spectral density of a record.
 #[derive(Debug, Clone, PartialEq)]
@@ -98,13 +98,9 @@ impl Spectrum {
     /// [`NoiseError::BadConfidence`].
     pub fn interval(&self, confidence: f64) -> Result<(f64, f64), NoiseError> {
         let edf = self.degrees_of_freedom;
-        match ChiSquared::new(edf) {
-            Ok(chi_squared) if confidence > 0.0 && confidence < 1.0 => {
-                let tail = 0.5 * (1.0 - confidence);
-                Ok((edf / chi_squared.inverse_cdf(1.0 - tail), edf / chi_squared.inverse_cdf(tail)))
-            }
-            _ => Err(NoiseError::BadConfidence { found: confidence }),
-        }
+        let [low, high] =
+            chi_squared_quantiles(edf, confidence).ok_or(NoiseError::BadConfidence { found: confidence })?;
+        Ok((edf / high, edf / low))
     }
 }
 

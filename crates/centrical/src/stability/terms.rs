@@ -3,7 +3,6 @@
 use std::f64::consts::{LN_2, PI};
 
 use nalgebra::{DMatrix, DVector};
-use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 use super::error::NoiseError;
 use super::estimator::Estimator;
@@ -12,6 +11,7 @@ use super::log_moments::MomentModel;
 use super::phase::Phase;
 use super::stochastic_terms::{STOCHASTIC, hadamard_shares};
 use crate::progress::{OnProgress, Watch, advance};
+use crate::statistics::chi_squared_tail;
 
 /// A noise term: its two-sided spectrum and its share of the Allan variance.
 ///
@@ -116,8 +116,7 @@ impl NoiseTerms {
     /// Whether chi-squared is below the value that the terms alone stay below in 999 of 1000 records. If not, the record
     /// holds other noise (a line, a colour of its own), and neither coefficients nor uncertainties should be quoted as they are.
     pub fn is_consistent(&self) -> bool {
-        ChiSquared::new(self.degrees_of_freedom as f64)
-            .is_ok_and(|distribution| self.chi_squared <= distribution.inverse_cdf(0.999))
+        self.degrees_of_freedom > 0 && chi_squared_tail(self.chi_squared, self.degrees_of_freedom) >= 1e-3
     }
 
     /// Allan deviation at `tau` (s) of the best fit: a determined ramp, and the other terms at their most likely

@@ -1,5 +1,6 @@
 //! Laws of what chance makes.
 
+use statrs::distribution::{ChiSquared, ContinuousCDF};
 use statrs::function::beta::beta_reg;
 use statrs::function::gamma::gamma_ur;
 
@@ -16,11 +17,62 @@ pub fn chi_squared_tail(chi_squared: f64, nu: usize) -> f64 {
     }
 }
 
+/// The quantiles of chi^2 with `nu` degrees of freedom between which it lies with probability `confidence`, as much on either side.
+/// `None` without degrees of freedom, or where `confidence` is not in (0, 1).
+pub fn chi_squared_quantiles(nu: f64, confidence: f64) -> Option<[f64; 2]> {
+    let law = ChiSquared::new(nu).ok().filter(|_| confidence > 0.0 && confidence < 1.0)?;
+    let tail = 0.5 * (1.0 - confidence);
+    Some([tail, 1.0 - tail].map(|probability| law.inverse_cdf(probability)))
+}
+
 /// Probability of an F statistic of at least `f` with `m` and `n` degrees of freedom; 1 without degrees of freedom.
-pub fn f_tail(f: f64, m: usize, n: usize) -> f64 {
-    if m == 0 || n == 0 || f.is_nan() || f <= 0.0 {
+pub fn f_tail(f: f64, m: f64, n: f64) -> f64 {
+    if m <= 0.0 || n <= 0.0 || f.is_nan() || f <= 0.0 {
         return 1.0;
     }
-    let (m, n) = (m as f64, n as f64);
     if f.is_infinite() { 0.0 } else { beta_reg(0.5 * n, 0.5 * m, n / (n + m * f)) }
+}
+
+/// Probability of a t with `nu` degrees of freedom at least as far from zero; 1 without degrees of freedom.
+pub fn t_tail(t: f64, nu: f64) -> f64 {
+    f_tail(t * t, 1.0, nu)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// `2 * scipy.stats.t.sf(t, nu)` of SciPy 1.17, for few and very many degrees of freedom: `1 - t^2 / nu` has lost the digits of `t`
+    /// that the tolerance allows for.
+    #[test]
+    fn t_as_scipy_has_it() {
+        for (t, nu, expected) in T {
+            let found = t_tail(t, nu);
+            assert!((found / expected - 1.0).abs() < 1e-11 + 1e-15 * nu, "{t} {nu}: {found:e}, expected {expected:e}");
+        }
+    }
+
+    const T: [(f64, f64, f64); 21] = [
+        (0.3, 2.5, 7.873_423_714_951_973e-1),
+        (2.0, 2.5, 1.573_914_957_579_659e-1),
+        (6.0, 2.5, 1.528_172_988_552_29e-2),
+        (0.3, 30.0, 7.662_461_052_843_528e-1),
+        (2.0, 30.0, 5.462_504_496_298_309e-2),
+        (6.0, 30.0, 1.394_276_876_720_476e-6),
+        (0.3, 101.0, 7.647_937_230_745_11e-1),
+        (2.0, 101.0, 4.818_521_120_739_07e-2),
+        (6.0, 101.0, 3.101_884_361_321_023e-8),
+        (0.3, 1e4, 7.641_833_912_293_323e-1),
+        (2.0, 1e4, 4.552_726_066_143_543e-2),
+        (6.0, 1e4, 2.041_618_472_922_621e-9),
+        (0.3, 1e6, 7.641_772_179_789_942e-1),
+        (2.0, 1e6, 4.550_053_385_131_924e-2),
+        (6.0, 1e6, 1.973_849_812_354_43e-9),
+        (0.3, 1e8, 7.641_771_562_456_637e-1),
+        (2.0, 1e8, 4.550_026_659_590_669e-2),
+        (6.0, 1e8, 1.973_182_034_315_279e-9),
+        (0.3, 1e10, 7.641_771_556_283_306e-1),
+        (2.0, 1e10, 4.550_026_392_335_392e-2),
+        (6.0, 1e10, 1.973_175_357_517_696e-9),
+    ];
 }

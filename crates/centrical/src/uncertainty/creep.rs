@@ -53,7 +53,7 @@ impl Creep {
         is_seen.then(|| Self {
             rate: along_rate / of_rate,
             standard_uncertainty: scatter.sqrt() / of_rate.abs(),
-            probability: f_tail(along_rate * along_rate / scatter, 1, degrees_of_freedom),
+            probability: f_tail(along_rate * along_rate / scatter, 1.0, degrees_of_freedom as f64),
         })
     }
 }

@@ -7,11 +7,11 @@
 
 use nalgebra::Vector3;
 
-use super::holm::holm;
 use super::rivals::columns::Columns;
 use super::rivals::{Rivals, Scatter, Suspect};
 use crate::fit::Calibration;
 use crate::model::{Experiment, FitError, Rival, SetPoint};
+use crate::statistics::holm;
 
 /// What the residuals of one newtonometer could follow.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

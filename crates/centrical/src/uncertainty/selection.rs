@@ -269,7 +269,7 @@ fn nested_test(candidates: &[&Candidate], fitted: &[FittedCandidate], n: usize) 
     let left = fitted[n].degrees_of_freedom;
     let f =
         ((fitted[nested].chi_squared - fitted[n].chi_squared) / further as f64) / (fitted[n].chi_squared / left as f64);
-    Some(NestedTest { nested, f, further, probability: f_tail(f, further, left) })
+    Some(NestedTest { nested, f, further, probability: f_tail(f, further as f64, left as f64) })
 }
 
 /// The calibration with the recommended model.

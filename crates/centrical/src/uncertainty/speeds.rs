@@ -8,12 +8,12 @@
 //! set speed and of the reports. Every plateau is tested, and the mean of all; the probabilities are family-wise over these
 //! tests (Šidák). Where the common part alone is off, one statement says so for all plateaus.
 
-use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
+use statrs::distribution::{ContinuousCDF, Normal};
 
 use super::coverage::Degrees;
 use super::verdict::Level;
 use crate::reduction::MeasuredSpeed;
-use crate::statistics::median;
+use crate::statistics::{median, sidak, t_tail};
 
 /// A plateau whose speed is shown.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -130,7 +130,7 @@ impl<'a> Tested<'a> {
             return None;
         }
         let (mean, standard_uncertainty) = self.mean(alike);
-        let probability = family_wise(two_sided(mean / standard_uncertainty, Degrees::Infinite), self.family());
+        let probability = sidak(two_sided(mean / standard_uncertainty, Degrees::Infinite), self.family());
         let example = self.nearest(alike, mean)?;
         Level::Reported.is_passed_by(probability).then(|| SpeedContradiction {
             extent: Extent::All,
@@ -165,7 +165,7 @@ impl<'a> Tested<'a> {
             (scatter, Degrees::Finite(shown.degrees_of_freedom as f64)),
         ]);
         let deviation = (self.difference[n] - common.unwrap_or(0.0)) / self.uncertainty[n].hypot(scale);
-        family_wise(two_sided(deviation, degrees), self.family())
+        sidak(two_sided(deviation, degrees), self.family())
     }
 
     /// What the plateaus that are off from the `common` difference have in common: whole mountings first, then whole speeds, then the others.
@@ -243,21 +243,8 @@ impl<'a> Tested<'a> {
 
 /// Probability of a deviation at least as large either way, in standard uncertainties.
 fn two_sided(deviation: f64, degrees: Degrees) -> f64 {
-    let size = deviation.abs();
-    let normal = |size: f64| 2.0 * Normal::standard().cdf(-size);
     match degrees {
-        Degrees::Infinite => normal(size),
-        // The continued fraction of the beta function does not converge for many degrees: Wallace's normal deviate there,
-        // to a part in 10^4 of the deviate (D. L. Wallace, Ann. Math. Statist. 30 (1959) 1121).
-        Degrees::Finite(nu) if nu > 100.0 => {
-            normal((8.0 * nu + 1.0) / (8.0 * nu + 3.0) * (nu * (size * size / nu).ln_1p()).sqrt())
-        }
-        Degrees::Finite(nu) => StudentsT::new(0.0, 1.0, nu).map_or(1.0, |t| 2.0 * t.cdf(-size)),
+        Degrees::Infinite => 2.0 * Normal::standard().cdf(-deviation.abs()),
+        Degrees::Finite(nu) => t_tail(deviation, nu),
     }
-}
-
-/// Probability that one of `family` independent tests is as improbable (Šidák).
-fn family_wise(probability: f64, family: f64) -> f64 {
-    // Without the cancellation of 1 - (1 - p)^n.
-    -(family * (-probability).ln_1p()).exp_m1()
 }

@@ -11,12 +11,12 @@
 //! `R` itself: a column that the retired states took up entirely is rounding, and has to stay small.
 
 use nalgebra::{DMatrix, DVector, SVD};
-use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 use super::information::Filter;
 use super::readings::Readings;
 use crate::model::FitError;
 use crate::observability::Observability;
+use crate::statistics::{chi_squared_tail, sidak};
 
 /// The outcome of the test of one plateau.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -31,14 +31,13 @@ impl Innovation {
     /// Probability that a plateau which fits shows an innovation as large as this or larger; 1 if nothing could be
     /// predicted.
     pub fn probability(&self) -> f64 {
-        ChiSquared::new(self.degrees_of_freedom as f64).map_or(1.0, |chi_squared| chi_squared.sf(self.squared))
+        chi_squared_tail(self.squared, self.degrees_of_freedom)
     }
 
     /// Whether the plateau does not fit, when one good session in `1 / false_alarm` of `plateaus` plateaus may be
-    /// accused of one that does not: by Sidak each single test has `1 - (1 - false_alarm)^(1 / plateaus)`.
+    /// accused of one that does not (Sidak).
     pub fn is_alarm(&self, false_alarm: f64, plateaus: usize) -> bool {
-        let single = -((-false_alarm).ln_1p() / plateaus.max(1) as f64).exp_m1();
-        self.probability() < single
+        sidak(self.probability(), plateaus.max(1) as f64) < false_alarm
     }
 }
 

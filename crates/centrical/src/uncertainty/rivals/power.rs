@@ -14,7 +14,7 @@ pub(super) fn non_centrality(m: usize, n: usize, level: f64, power: f64) -> Opti
     if m == 0 || n == 0 {
         return None;
     }
-    let critical = bisect(|f| f_tail(f, m, n) < level)?;
+    let critical = bisect(|f| f_tail(f, m as f64, n as f64) < level)?;
     bisect(|lambda| 1.0 - non_central_f(critical, m, n, lambda) > power)
 }
 

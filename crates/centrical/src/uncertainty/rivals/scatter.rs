@@ -79,5 +79,5 @@ pub(in crate::uncertainty) fn chance_of_explaining(statistic: f64, m: usize, res
 
 /// The same by the scatter of the others alone.
 fn by_others(statistic: f64, m: usize, rest: f64, n: usize) -> f64 {
-    f_tail((statistic / m as f64) / (rest.max(0.0) / n as f64), m, n)
+    f_tail((statistic / m as f64) / (rest.max(0.0) / n as f64), m as f64, n as f64)
 }

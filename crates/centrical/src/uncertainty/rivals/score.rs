@@ -3,8 +3,7 @@
 use super::catalogue::{Rivals, Suspect};
 use super::columns::Seen;
 use crate::model::{Parameter, Rival};
-use crate::statistics::chi_squared_tail;
-use crate::uncertainty::holm::holm;
+use crate::statistics::{chi_squared_tail, holm};
 use crate::uncertainty::verdict::Level;
 
 /// Part of what a rival explains that its own curvature may leave, since the score is linear in it: a shift of 10 mm on an arm of 0.5 m

@@ -1,7 +1,7 @@
 //! Many tests at once.
 
 /// Holm's step-down family-wise probabilities of tests whose `probabilities` rise.
-pub(super) fn holm(probabilities: impl ExactSizeIterator<Item = f64>) -> Vec<f64> {
+pub(crate) fn holm(probabilities: impl ExactSizeIterator<Item = f64>) -> Vec<f64> {
     let count = probabilities.len();
     let mut highest: f64 = 0.0;
     let family_wise = probabilities.enumerate().map(|(n, probability)| {
@@ -21,4 +21,10 @@ pub fn family_wise(probabilities: &[f64]) -> Vec<f64> {
         family_wise[test] = probability;
     }
     family_wise
+}
+
+/// The family-wise probability of one of `count` independent tests (Z. Sidak, Journal of the American Statistical Association 62, 1967).
+pub(crate) fn sidak(probability: f64, count: f64) -> f64 {
+    // Without the cancellation of 1 - (1 - p)^n.
+    -(count * (-probability).ln_1p()).exp_m1()
 }
