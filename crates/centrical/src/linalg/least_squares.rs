@@ -36,7 +36,17 @@ impl LeastSquares {
         Self::eliminating(&[], scaled, sizes)
     }
 
-    /// The same, and the unknowns of some groups are eliminated first.
+    /// Factors `A`, its columns scaled to unit length. `None` where they are dependent or more than the rows.
+    pub(crate) fn of_columns(mut columns: DMatrix<f64>) -> Option<Self> {
+        /// What rounding leaves of a column of unit length that others make up.
+        const ROUNDING: f64 = 1e-12;
+        let sizes = DVector::from_iterator(columns.ncols(), columns.column_iter().map(|column| 1.0 / column.norm()));
+        columns.column_iter_mut().zip(&sizes).for_each(|(mut column, size)| column *= *size);
+        let equations = (columns.nrows() >= columns.ncols()).then(|| Self::new(columns, sizes))?;
+        equations.r.diagonal().iter().all(|length| length.abs() > ROUNDING).then_some(equations)
+    }
+
+    /// The same as [`Self::new`], and the unknowns of some groups are eliminated first.
     pub(crate) fn eliminating(groups: &[Own], scaled: DMatrix<f64>, sizes: DVector<f64>) -> Self {
         let rows = scaled.nrows();
         let (elimination, left) = Elimination::of(scaled, groups);

@@ -4,6 +4,7 @@ use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 use super::log_moments::{LogMoments, MomentModel};
 use super::stochastic_terms::STOCHASTIC;
+use crate::linalg::least_squares::LeastSquares;
 
 /// Variances to be described by `v = A theta`, theta >= 0.
 pub(super) struct LogFit {
@@ -47,14 +48,12 @@ impl LogFit {
         Some(reduced.chi_squared - whole.chi_squared)
     }
 
-    /// Standard deviations of the active theta: `(D^T D)^-1`, D the whitened derivative of the logarithms.
+    /// Standard deviations of the active theta by D, the whitened derivative of the logarithms.
     pub(super) fn standard_deviations(&self, model: &Model) -> Option<[f64; STOCHASTIC]> {
         let weights = self.weights(&model.theta)?;
         let (design, _) = self.linearise(&model.theta, &self.nothing(), &weights);
-        let norms = DVector::from_iterator(STOCHASTIC, design.column_iter().map(|column| column.norm()));
-        let scaled = DMatrix::from_fn(design.nrows(), STOCHASTIC, |j, k| design[(j, k)] / norms[k]);
-        let inverse = scaled.qr().r().try_inverse()?;
-        Some(std::array::from_fn(|k| inverse.row(k).norm() / norms[k]))
+        let deviations = LeastSquares::of_columns(design)?.standard_uncertainties();
+        Some(std::array::from_fn(|k| deviations[k]))
     }
 
     /// The theta_k at which chi-squared, the active terms refitted, is 1.645^2 above its least.
@@ -188,7 +187,8 @@ fn non_negative(design: &DMatrix<f64>, target: &DVector<f64>, is_active: [bool; 
             continue;
         }
         let columns = design.select_columns(&subset);
-        let Some(solution) = least_squares(&columns, target) else { continue };
+        let Some(equations) = LeastSquares::of_columns(columns.clone()) else { continue };
+        let solution = equations.solve(target.clone()).x;
         let square = (columns * &solution - target).norm_squared();
         if square < best.0 && solution.iter().all(|theta| *theta > 0.0) {
             best = (square, [0.0; STOCHASTIC]);
@@ -196,18 +196,4 @@ fn non_negative(design: &DMatrix<f64>, target: &DVector<f64>, is_active: [bool; 
         }
     }
     best.1
-}
-
-/// By QR of the columns scaled to length 1.
-fn least_squares(columns: &DMatrix<f64>, target: &DVector<f64>) -> Option<DVector<f64>> {
-    let norms: Vec<f64> = columns.column_iter().map(|column| column.norm()).collect();
-    let mut scaled = columns.clone();
-    scaled.column_iter_mut().zip(&norms).for_each(|(mut column, norm)| column /= *norm);
-    let qr = scaled.qr();
-    let mut solution = qr.q().transpose() * target;
-    if !qr.r().solve_upper_triangular_mut(&mut solution) {
-        return None;
-    }
-    solution.iter_mut().zip(&norms).for_each(|(value, norm)| *value /= norm);
-    Some(solution)
 }

@@ -12,6 +12,7 @@ use nalgebra::{DMatrix, DVector};
 use super::clock::{ClockOffset, SpeedTrace};
 use super::shape::FADED;
 use super::window::Window;
+use crate::linalg::least_squares::LeastSquares;
 use crate::statistics::{MAD, median, whole};
 
 /// Pulses of an index mark or of an encoder.
@@ -152,7 +153,9 @@ impl Fitted {
         // Spikes hide one another in a fit: a few rounds find them all. What a last round leaves is not a spike but a misfit,
         // which the scatter of groups shows.
         for round in 1..=ROUNDS {
-            let (coefficients, gain) = solve(columns, values, &kept)?;
+            let equations =
+                (kept.len() > columns.len()).then(|| LeastSquares::of_columns(rows(columns, &kept))).flatten()?;
+            let coefficients = equations.solve(DVector::from_fn(kept.len(), |row, _| values[kept[row]])).x;
             let residual =
                 |k: &usize| values[*k] - columns.iter().zip(&coefficients).map(|(c, x)| c[*k] * x).sum::<f64>();
             let residuals: Vec<f64> = kept.iter().map(residual).collect();
@@ -163,6 +166,7 @@ impl Fitted {
             if good.len() == kept.len() || round == ROUNDS {
                 let (variance, degrees_of_freedom) = scatter(&residuals, columns.len());
                 let further = coefficient_beside(columns, further, &residuals, &kept);
+                let gain = equations.standard_uncertainties()[0].powi(2);
                 return Some(Self { value: coefficients[0], gain, deviation, variance, degrees_of_freedom, further });
             }
             kept = good;
@@ -180,22 +184,17 @@ impl Fitted {
     }
 }
 
-/// Coefficients, and the variance of the first of them per variance of a sample.
-fn solve(columns: &[Vec<f64>], values: &[f64], kept: &[usize]) -> Option<(Vec<f64>, f64)> {
-    let n = columns.len();
-    let sum = |a: &[f64], b: &[f64]| kept.iter().map(|k| a[*k] * b[*k]).sum::<f64>();
-    let normal = DMatrix::from_fn(n, n, |i, j| sum(&columns[i], &columns[j]));
-    let right = DVector::from_fn(n, |i, _| sum(&columns[i], values));
-    let cholesky = (kept.len() > n).then(|| normal.cholesky()).flatten()?;
-    let inverse = cholesky.inverse();
-    Some((cholesky.solve(&right).as_slice().to_vec(), inverse[(0, 0)]))
+/// The kept values of some columns.
+fn rows(columns: &[Vec<f64>], kept: &[usize]) -> DMatrix<f64> {
+    DMatrix::from_fn(kept.len(), columns.len(), |row, column| columns[column][kept[row]])
 }
 
 /// Coefficient of a column that is fitted to the residuals of a fit by others, and its standard uncertainty by their scatter about it.
 fn coefficient_beside(columns: &[Vec<f64>], column: &[f64], residuals: &[f64], kept: &[usize]) -> Option<[f64; 2]> {
-    let (of_others, _) = solve(columns, column, kept)?;
-    let beside = |k: &usize| column[*k] - columns.iter().zip(&of_others).map(|(c, x)| c[*k] * x).sum::<f64>();
-    let beside: Vec<f64> = kept.iter().map(beside).collect();
+    let others = rows(columns, kept);
+    let column = DVector::from_fn(kept.len(), |row, _| column[kept[row]]);
+    let of_others = LeastSquares::of_columns(others.clone())?.solve(column.clone()).x;
+    let beside = column - others * of_others;
     let square: f64 = beside.iter().map(|c| c * c).sum();
     let coefficient = beside.iter().zip(residuals).map(|(c, r)| c * r).sum::<f64>() / square;
     let about: Vec<f64> = beside.iter().zip(residuals).map(|(c, r)| r - coefficient * c).collect();
