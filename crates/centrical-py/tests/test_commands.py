@@ -314,12 +314,29 @@ def test_what_a_history_is_not_asked(store):
         (lambda: ct.history(store, check=True), "check: found it for 'unit', expected it for 'list' alone"),
         (lambda: ct.history([], "unit"), "results: found none, expected a store"),
         (lambda: ct.history([store, store], "list"), "results: found 2, expected one store"),
-        (lambda: ct.history(store), "expected calibrations of one, by serial and model"),
-        (lambda: ct.history(store, serial="0001", on="2020-01-01"), "found on = 2020-01-01, expected "),
+        (lambda: ct.history(store), "expected calibrations of one, by --serial and --model"),
+        (lambda: ct.history(store, serial="0001", on="2020-01-01"), "found --on 2020-01-01, expected "),
         (lambda: ct.control_chart("df_1", store, limits=(0.0, -1.0)), "deviation: found -1 about 0, expected"),
         (lambda: ct.control_chart("df_9", store), "no session that determines df_9"),
     ):
         with pytest.raises(ValueError, match=re.escape(said)):
+            wrong()
+
+
+def test_models_and_stations_are_not_mixed(result_file, tmp_path):
+    document = json.loads(result_file.read_text())
+    for n in range(4):
+        document["session"] |= {"date": f"{2020 + n}-01-01", "unit_model": ["even", "odd"][n % 2], "station": "NS"[n // 2]}
+        (tmp_path / f"{n}.json").write_text(json.dumps(document))
+    files = sorted(tmp_path.glob("*.json"))
+    models, stations = 'found "even", "odd", expected one, by --model', 'found "N", "S", expected one, by --station'
+    for wrong, said in (
+        (lambda: ct.history(files, "units"), models),
+        (lambda: ct.history(files, "station"), stations),
+        (lambda: ct.control_chart("df_1", files), models),
+        (lambda: ct.control_chart("df_1", files, model="even"), stations),
+    ):
+        with pytest.raises(ct.InputError, match=re.escape(said)):
             wrong()
 
 

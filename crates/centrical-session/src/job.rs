@@ -28,9 +28,9 @@ pub use self::calibrate::{calibrate, calibrate_reduced, calibrate_without};
 pub use self::compare::{ComparisonRequest, compare_results};
 pub use self::compensate::{Compensated, CompensationRequest, FirstOutside, compensate, compensate_record};
 pub use self::history::{
-    Calibrated, CalibratedParameter, ChartLimits, ChartRequest, ComparedUnits, NoChart, ParameterLimits, Past, RuleSet,
-    UnitHistoryRequest, UnitsHistoryRequest, by_unit, chart, expected_day, history_up_to, read_batches,
-    read_calibrations, read_limits, several_units, station_history, unit_history, unit_means, units_history,
+    Calibrated, CalibratedParameter, ChartLimits, ChartRequest, ComparedUnits, NoHistory, ParameterLimits, Past,
+    RuleSet, UnitHistoryRequest, UnitsHistoryRequest, by_unit, chart, chart_of_one, history_up_to, read_batches,
+    read_calibrations, read_limits, station_history, unit_history, unit_history_among, unit_means, units_history,
 };
 pub use self::history::{
     add_result, add_results, check_store, collect_results, list_store, refuse_date, spelling, today,

@@ -82,13 +82,13 @@ pub use job::{
     WatchProgress, WatchRequest, add_result, add_results, assess, calibrate, calibrate_reduced, calibrate_series,
     calibrate_without, check_store, collect_results, compare_results, compensate, compensate_record, expanded, init,
     list_store, noise_of, noise_of_plateau, plan, read_plan, read_planning, reduce, reduce_recorded,
-    reduce_without_inputs, refuse_date, select_model, settings_schema, several_units, simulate_session, spelling,
-    subject, subject_of, time_column, today, tumble, watch, write_reduced,
+    reduce_without_inputs, refuse_date, select_model, settings_schema, simulate_session, spelling, subject, subject_of,
+    time_column, today, tumble, watch, write_reduced,
 };
 pub use job::{
-    Calibrated, CalibratedParameter, ChartLimits, ChartRequest, ComparedUnits, NoChart, ParameterLimits, Past, RuleSet,
-    UnitHistoryRequest, UnitsHistoryRequest, by_unit, chart, expected_day, history_up_to, read_batches,
-    read_calibrations, read_limits, station_history, unit_history, unit_means, units_history,
+    Calibrated, CalibratedParameter, ChartLimits, ChartRequest, ComparedUnits, NoHistory, ParameterLimits, Past,
+    RuleSet, UnitHistoryRequest, UnitsHistoryRequest, by_unit, chart, chart_of_one, history_up_to, read_batches,
+    read_calibrations, read_limits, station_history, unit_history, unit_history_among, unit_means, units_history,
 };
 pub use laboratory::{
     Address, Certificate, Condition, Contact, Customer, Decision, DecisionRule, Environment, Item, Laboratory,

@@ -284,19 +284,28 @@ fn a_machine_that_changes_with_its_units_is_not_called_steady() {
     assert!(text.starts_with("NOT STEADY") && text.contains("2013-03-01 STANDS OUT") && code == 1, "{text}");
 }
 
-/// Stations and models are not mixed in one chart.
+/// Stations and models are not mixed; Python says the same (`test_what_a_history_is_not_asked`).
 #[test]
-fn a_chart_is_of_one_station_and_model() {
+fn a_history_is_of_one_station_and_model() {
     let results = Results::new();
-    for n in 0..4 {
+    for n in 0..8 {
         results.add(&n.to_string(), "0001", &format!("202{n}-03-01"), |result| {
             set(result, "df_1", 1e-6 * f64::from(n));
-            result["session"]["station"] = json!(if n < 2 { "N" } else { "S" });
+            result["session"]["station"] = json!(if n < 4 { "N" } else { "S" });
+            result["session"]["unit_model"] = json!(if n % 2 == 0 { "even" } else { "odd" });
         });
     }
-    let (code, _, message) = results.run(&["chart", "df_1", ".", "--accepted", "2"]);
-    assert!(message.contains("found \"N\", \"S\", expected one, by --station") && code == 2, "{message}");
-    let (code, text, _) = results.run(&["chart", "df_1", ".", "--accepted", "2", "--station", "N"]);
+    let refused = |arguments: &[&str], sentence: &str| {
+        let (code, _, message) = results.run(arguments);
+        assert!(message.contains(sentence) && code == 2, "{message}");
+    };
+    let (models, stations) =
+        ("found \"even\", \"odd\", expected one, by --model", "found \"N\", \"S\", expected one, by --station");
+    refused(&["units", "."], models);
+    refused(&["station", "."], stations);
+    refused(&["chart", "df_1", "."], models);
+    refused(&["chart", "df_1", ".", "--model", "even"], stations);
+    let (code, text, _) = results.run(&["chart", "df_1", ".", "--accepted", "2", "--model", "even", "--station", "N"]);
     assert!(code == 0 && text.starts_with("IN CONTROL"), "{text}");
 }
 

@@ -7,8 +7,8 @@ use centrical_report::{PagesRequest, chart_plots, unit_history_plots, write_hist
 use centrical_session::{
     Added, Calibrated, ChartLimits, ChartRequest, ComparedUnits, Date, Depth, Dimension, Error, Failure, OnProgress,
     ParameterLimits, Past, Place, Row, RuleSet, Selection, Store, UnitHistoryRequest, UnitsHistoryRequest, add_result,
-    add_results, advance, by_unit, chart, check_store, expected_day, list_store, read_batches, read_calibrations,
-    read_limits, several_units, station_history, today, unit_history, units_history,
+    add_results, advance, by_unit, chart_of_one, check_store, list_store, read_batches, read_calibrations, read_limits,
+    station_history, today, unit_history_among, units_history,
 };
 use pyo3::exceptions::PyUserWarning;
 use pyo3::prelude::*;
@@ -27,6 +27,11 @@ fn read(results: &[PathBuf], selection: &Selection, progress: OnProgress) -> Res
         // A filter may turn a warning into an error.
         Python::attach(|py| PyErr::warn(py, &py.get_type::<PyUserWarning>(), &words, 1))
             .map_err(|_| Error::content(&results[0], Place::Whole, calibration, expected))?;
+    }
+    if calibrations.is_empty() {
+        let asked = "results, as model, serial and station ask for";
+        let expected = if selection.names_any() { asked } else { "results" };
+        return Err(Error::content(&results[0], Place::Whole, "no such calibration", expected));
     }
     Ok(calibrations)
 }
@@ -122,30 +127,15 @@ pub fn history_unit(
         let refuse = |day: &str| refused(name, format!("found {day:?}, expected a day such as 2026-10-05"));
         day.map(|day| day.parse::<Date>().map_err(|_| refuse(&day))).transpose()
     };
-    let asked = day("on", on)?;
-    let on = Some(asked.unwrap_or_else(Date::today));
-    let until = day("until", until)?;
+    let (on, until) = (day("on", on)?, day("until", until)?);
     let request = UnitHistoryRequest { trend, until, limit, on, coverage: confidence };
     let results = given(results)?;
     progress::run(py, &None, |work| {
         let (model, serial, station) = chosen;
         let read_of = if together { None } else { serial.clone() };
         let selection = selection(Depth::Whole, (model, read_of, station));
-        let units = by_unit(read(&results, &selection, &|done| work.advance(done))?);
-        let is_meant = |unit: &str| serial.as_deref().is_none_or(|wanted| wanted == unit);
-        let (own, others): (Vec<_>, Vec<_>) = units.into_iter().partition(|unit| is_meant(&unit[0].unit_serial));
-        let [own] = own.as_slice() else {
-            let expected = "calibrations of one, by serial and model";
-            return Err(Error::content(&results[0], Place::Whole, several_units(&own), expected));
-        };
-        for (name, asked) in [("on", asked), ("until", until)] {
-            if let Some((day, expected)) = asked.and_then(|day| Some((day, expected_day(day, own)?))) {
-                return Err(Error::content(&results[0], Place::Whole, format!("{name} = {day}"), expected));
-            }
-        }
-        let others: Vec<_> = others.into_iter().filter(|unit| unit[0].unit_model == own[0].unit_model).collect();
-        let report = unit_history(own, &others, request)
-            .ok_or_else(|| missing(&results, "two calibrations of the unit or more"))?;
+        let calibrations = read(&results, &selection, &|done| work.advance(done))?;
+        let report = unit_history_among(calibrations, serial.as_deref(), request).map_err(|none| none.of(&results))?;
         if let Some(folder) = &out {
             write_plots(folder, &unit_history_plots(&report, &ParameterLimits::default()), &results)?;
         }
@@ -169,8 +159,8 @@ pub fn history_units(
         let limits = laboratory.as_deref().map(|file| read_limits(file, &calibrations)).transpose()?;
         let batches = batches.as_deref().map(read_batches).transpose()?;
         let request = UnitsHistoryRequest { limits: limits.unwrap_or_default(), batches: batches.unwrap_or_default() };
-        let report = units_history(&ComparedUnits::of(by_unit(calibrations)), &request);
-        report.ok_or_else(|| missing(&results, "calibrations with a parameter in common"))?.to_json()
+        let report = ComparedUnits::of(by_unit(calibrations)).and_then(|compared| units_history(&compared, &request));
+        report.map_err(|none| none.of(&results))?.to_json()
     })
 }
 
@@ -181,8 +171,7 @@ pub fn history_station(py: Python, results: Vec<PathBuf>, chosen: Chosen) -> PyR
     progress::run(py, &None, |work| {
         let selection = selection(Depth::Values, chosen);
         let calibrations = read(&results, &selection, &|done| work.advance(done))?;
-        let report = station_history(&calibrations);
-        report.ok_or_else(|| missing(&results, "calibrations of the station"))?.to_json()
+        station_history(&calibrations).map_err(|none| none.of(&results))?.to_json()
     })
 }
 
@@ -211,8 +200,8 @@ pub fn history_chart(
     progress::run(py, &None, |work| {
         let selection = selection(Depth::Values, chosen);
         let calibrations = read(&results, &selection, &|done| work.advance(done))?;
-        let report = chart(&calibrations, parameter, ChartRequest { limits, rules, last: None })
-            .map_err(|none| Error::content(&results[0], Place::Whole, none.found(), none.expected()))?;
+        let report = chart_of_one(&calibrations, parameter, ChartRequest { limits, rules, last: None })
+            .map_err(|none| none.of(&results))?;
         if let Some(folder) = &out {
             write_plots(folder, &chart_plots(&report), &results)?;
         }
@@ -255,9 +244,4 @@ fn given(results: Vec<PathBuf>) -> PyResult<Vec<PathBuf>> {
         return Err(refused("results", "found none, expected a store, results or folders of them"));
     }
     Ok(results)
-}
-
-/// An error of results, one at least, as a whole.
-fn missing(results: &[PathBuf], expected: &str) -> Error {
-    Error::content(&results[0], Place::Whole, "no such calibrations", expected)
 }

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use centrical_report::{chart_plots, chart_text, write_plots};
-use centrical_session::{ChartLimits, ChartRequest, Depth, Error, RuleSet, chart};
+use centrical_session::{ChartLimits, ChartRequest, Depth, Error, RuleSet, chart_of_one};
 
 use super::choice::Choice;
 use crate::outcome::Outcome;
@@ -65,10 +65,8 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     };
     let request = ChartRequest { limits, rules, last: None };
     let calibrations = choice.read(Depth::Values)?;
-    choice.only(&calibrations, |c| c.unit_model.as_str(), "--model")?;
-    choice.only(&calibrations, |c| c.station.as_str(), "--station")?;
-    let report = chart(&calibrations, &arguments.parameter, request)
-        .map_err(|source| choice.refuse(source.found(), &source.expected()))?;
+    let report = chart_of_one(&calibrations, &arguments.parameter, request);
+    let report = report.map_err(|none| none.of(&choice.results))?;
     if let Some(folder) = &arguments.out {
         write_plots(folder, &chart_plots(&report), &choice.results)?;
     }

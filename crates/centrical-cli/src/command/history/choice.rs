@@ -69,25 +69,6 @@ impl Choice {
         alike.into_iter().collect::<Vec<_>>().join(", ")
     }
 
-    /// What all have in common.
-    ///
-    /// # Errors
-    /// [`Error`] if they do not.
-    pub fn only<'a>(
-        &self,
-        calibrations: &'a [Calibrated],
-        of: impl Fn(&'a Calibrated) -> &'a str,
-        option: &str,
-    ) -> Result<(), Error> {
-        let names: BTreeSet<&str> = calibrations.iter().map(of).collect();
-        if names.len() < 2 {
-            return Ok(());
-        }
-        let listed = names.iter().take(8).map(|name| format!("\"{name}\"")).collect::<Vec<_>>().join(", ");
-        let more = if names.len() > 8 { format!(" and {} more", names.len() - 8) } else { String::new() };
-        Err(self.refuse(format!("{listed}{more}"), &format!("one, by {option}")))
-    }
-
     /// An error of the choice as a whole.
     pub fn refuse(&self, found: String, expected: &str) -> Error {
         Error::content(&self.results[0], Place::Whole, found, expected)

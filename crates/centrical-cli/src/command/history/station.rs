@@ -24,9 +24,7 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let choice = &arguments.choice;
     let calibrations = choice.read(Depth::Values)?;
-    choice.only(&calibrations, |c| c.station.as_str(), "--station")?;
-    let report = station_history(&calibrations)
-        .ok_or_else(|| choice.refuse("no calibration".to_owned(), "calibrations of one station"))?;
+    let report = station_history(&calibrations).map_err(|none| none.of(&choice.results))?;
     arguments.printing.show(|| station_history_text(&report), || report.to_json())?;
     Ok(Outcome::acceptable(report.is_steady != Some(false)))
 }

@@ -3,10 +3,7 @@
 use std::path::PathBuf;
 
 use centrical_report::{unit_history_plots, unit_history_text, write_plots};
-use centrical_session::{
-    Calibrated, Date, Depth, Error, ParameterLimits, UnitHistoryRequest, by_unit, expected_day, several_units,
-    unit_history,
-};
+use centrical_session::{Date, Depth, Error, ParameterLimits, UnitHistoryRequest, unit_history_among};
 
 use super::choice::Choice;
 use crate::given::largest_error;
@@ -54,34 +51,18 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     if !(arguments.confidence > 0.5 && arguments.confidence < 1.0) {
         return Err(choice.refuse(format!("--confidence {}", arguments.confidence), "a probability between 0.5 and 1"));
     }
-    let all = Choice { serial: None, ..choice.clone() };
-    let is_meant = |serial: &str| choice.serial.as_ref().is_none_or(|wanted| wanted == serial);
-    let (own, others): (Vec<_>, Vec<_>) = if arguments.together {
-        by_unit(all.read(Depth::Whole)?).into_iter().partition(|unit| is_meant(&unit[0].unit_serial))
-    } else {
-        (by_unit(choice.read(Depth::Whole)?), Vec::new())
-    };
-    let [calibrations] = own.as_slice() else {
-        return Err(choice.refuse(several_units(&own), "calibrations of one, by --serial and --model"));
-    };
-    let same_model = |unit: &Vec<Calibrated>| unit.first().is_some_and(|c| c.unit_model == calibrations[0].unit_model);
-    let others: Vec<_> = others.into_iter().filter(same_model).collect();
+    let read_of = if arguments.together { Choice { serial: None, ..choice.clone() } } else { choice.clone() };
+    let calibrations = read_of.read(Depth::Whole)?;
     choice.remark_alike();
-    for (option, asked) in [("--on", arguments.on), ("--until", arguments.until)] {
-        if let Some((day, expected)) = asked.and_then(|day| Some((day, expected_day(day, calibrations)?))) {
-            return Err(choice.refuse(format!("{option} {day}"), &expected));
-        }
-    }
     let request = UnitHistoryRequest {
         trend: !arguments.without_trend,
         until: arguments.until,
         limit: arguments.limit,
-        on: Some(arguments.on.unwrap_or_else(Date::today)),
+        on: arguments.on,
         coverage: arguments.confidence,
     };
-    let report = unit_history(calibrations, &others, request).ok_or_else(|| {
-        choice.refuse(format!("{} calibration", calibrations.len()), "two or more with a parameter in common")
-    })?;
+    let report = unit_history_among(calibrations, choice.serial.as_deref(), request);
+    let report = report.map_err(|none| none.of(&choice.results))?;
     if let Some(folder) = &arguments.out {
         write_plots(folder, &unit_history_plots(&report, &ParameterLimits::default()), &choice.results)?;
     }

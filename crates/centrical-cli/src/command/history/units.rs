@@ -34,13 +34,11 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let choice = &arguments.choice;
     let calibrations = choice.read(Depth::Errors)?;
-    choice.only(&calibrations, |c| c.unit_model.as_str(), "--model")?;
     let limits = arguments.laboratory.as_deref().map(|file| read_limits(file, &calibrations)).transpose()?;
     let batches = arguments.batches.as_deref().map(read_batches).transpose()?;
     let request = UnitsHistoryRequest { limits: limits.unwrap_or_default(), batches: batches.unwrap_or_default() };
-    let report = units_history(&ComparedUnits::of(by_unit(calibrations)), &request).ok_or_else(|| {
-        choice.refuse("no parameter that all determine".to_owned(), "calibrations with one in common")
-    })?;
+    let report = ComparedUnits::of(by_unit(calibrations)).and_then(|compared| units_history(&compared, &request));
+    let report = report.map_err(|none| none.of(&choice.results))?;
     arguments.printing.show(|| units_history_text(&report), || report.to_json())?;
     Ok(Outcome::acceptable(report.is_sound))
 }

@@ -115,7 +115,7 @@ fn stations(
     }
     let mut indexed = Vec::new();
     for calibrations in stations.values() {
-        let Some(report) = station_history(calibrations) else { continue };
+        let Ok(report) = station_history(calibrations) else { continue };
         let names: Vec<&str> = report.parameters.iter().map(|p| p.name.as_str()).collect();
         let charts = charts(calibrations, &names, request.accepted);
         let units = listed.units(|line| line.station == report.station);
@@ -138,9 +138,9 @@ fn models(
     }
     let mut indexed = Vec::new();
     for units in models.into_values() {
-        let compared = ComparedUnits::of(units);
+        let Ok(compared) = ComparedUnits::of(units) else { continue };
         let units = &compared.units;
-        let Some(report) = units_history(&compared, asked) else { continue };
+        let Ok(report) = units_history(&compared, asked) else { continue };
         let mut all: Vec<&Calibrated> = units.iter().flatten().collect();
         all.sort_by(|a, b| a.date.cmp(&b.date).then_with(|| a.source.cmp(&b.source)));
         let names: Vec<&str> = report.parameters.iter().map(|p| p.name.as_str()).collect();

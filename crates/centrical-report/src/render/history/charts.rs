@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use centrical_session::{ChartReport, NoChart, customary};
+use centrical_session::{ChartReport, NoHistory, customary};
 
 use super::frame::panels;
 use crate::figure::chart_plots;
@@ -15,7 +15,7 @@ pub struct StoreCharts {
     /// The charts, each of its last sessions.
     pub charts: Vec<ChartReport>,
     /// Why a parameter has none, the first of them.
-    pub missing: Option<NoChart>,
+    pub missing: Option<NoHistory>,
 }
 
 /// The kinds of charts, by the beginning of their rules.

@@ -5,6 +5,7 @@ use std::borrow::Borrow;
 use centrical::history::{Control, Rule};
 
 use super::calibrated::{Calibrated, Finder};
+use super::no_history::{FEWEST, NoHistory};
 use crate::document::{CHART_SCHEMA, ChartReport, ChartSignal, Program};
 
 /// The rules of single values.
@@ -37,83 +38,45 @@ pub struct ChartRequest {
     pub last: Option<usize>,
 }
 
-/// Why there is no chart.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub enum NoChart {
-    /// No session determines the parameter.
-    Unknown(String),
-    /// Too few acceptable sessions for limits.
-    TooFew {
-        /// How many there are.
-        found: usize,
-        /// How many there should be.
-        expected: usize,
-    },
-    /// Values of the acceptable sessions are equal: they have no limits.
-    Equal(usize),
-}
-
-impl NoChart {
-    /// What was found.
-    pub fn found(&self) -> String {
-        match self {
-            Self::Unknown(name) => format!("no session that determines {name}"),
-            Self::TooFew { found, .. } => counted(*found),
-            Self::Equal(found) => format!("{} with one value in all", counted(*found)),
-        }
-    }
-
-    /// What was expected.
-    pub fn expected(&self) -> String {
-        match self {
-            Self::Unknown(_) => "the name of a parameter in the results".to_owned(),
-            Self::TooFew { expected, .. } if *expected <= FEWEST => {
-                format!("{FEWEST} for the limits, or more by --accepted, or stated limits")
-            }
-            Self::TooFew { expected, .. } => {
-                format!("{expected} for the limits, fewer by --accepted, or stated limits")
-            }
-            Self::Equal(_) => "values that scatter, or stated limits by --centre and --deviation".to_owned(),
-        }
-    }
-}
-
-fn counted(sessions: usize) -> String {
-    format!("{sessions} acceptable session{}", if sessions == 1 { "" } else { "s" })
-}
-
-/// Sessions with a range between them.
-const FEWEST: usize = 2;
-
 /// Weight of the newest value, and limits in standard deviations: one false signal in 370 values.
 const EWMA: (f64, f64) = (0.2, 2.86);
 
 /// Reference value and decision interval in standard deviations: one false signal in 370 values.
 const CUSUM: (f64, f64) = (0.5, 4.77);
 
+/// The charts of parameter `name` over `calibrations` of one model of units at one station, in the order of time.
+///
+/// # Errors
+/// As [`chart`], and for calibrations of several models or stations.
+pub fn chart_of_one(calibrations: &[Calibrated], name: &str, request: ChartRequest) -> Result<ChartReport, NoHistory> {
+    NoHistory::refuse_several_models(calibrations.iter())?;
+    NoHistory::refuse_several_stations(calibrations.iter())?;
+    chart(calibrations, name, request)
+}
+
 /// The charts of parameter `name` over `calibrations`, in the order of time.
 ///
 /// # Errors
-/// [`NoChart`] when no session determines the parameter, or limits cannot be had.
+/// [`NoHistory`] when no session determines the parameter, or limits cannot be had.
 pub fn chart(
     calibrations: &[impl Borrow<Calibrated>],
     name: &str,
     request: ChartRequest,
-) -> Result<ChartReport, NoChart> {
+) -> Result<ChartReport, NoHistory> {
     let mut finder = Finder::new(name);
     let all = calibrations.iter().map(Borrow::borrow);
     let of: Vec<(&Calibrated, usize)> = all.filter_map(|c| Some((c, finder.place(c)?))).collect();
     let mut values: Vec<f64> = of.iter().map(|(c, place)| c.values[*place]).collect();
-    let Some((one, place)) = of.first() else { return Err(NoChart::Unknown(name.to_owned())) };
+    let Some((one, place)) = of.first() else { return Err(NoHistory::Unknown(name.to_owned())) };
     let (control, accepted) = match request.limits {
         ChartLimits::Stated(centre, deviation) => (Control { centre, deviation }, 0),
         ChartLimits::Accepted(expected) => {
             let acceptable = of.iter().zip(&values).filter(|((c, _), _)| c.acceptable).map(|(_, value)| *value);
             let accepted: Vec<f64> = acceptable.take(expected).collect();
             if accepted.len() < expected.max(FEWEST) {
-                return Err(NoChart::TooFew { found: accepted.len(), expected });
+                return Err(NoHistory::TooFew { found: accepted.len(), expected });
             }
-            (Control::of(&accepted).ok_or(NoChart::Equal(accepted.len()))?, accepted.len())
+            (Control::of(&accepted).ok_or(NoHistory::Equal(accepted.len()))?, accepted.len())
         }
     };
     let ranges = Control::moving_ranges(&values);

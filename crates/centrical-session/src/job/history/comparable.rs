@@ -8,9 +8,10 @@ use std::collections::{BTreeSet, HashMap};
 use std::sync::Arc;
 
 use super::calibrated::Calibrated;
+use super::no_history::NoHistory;
 use crate::document::LeftOutSession;
 
-/// Calibrations of units, unit by unit, that determine the same parameters.
+/// Calibrations of units of one model, unit by unit, that determine the same parameters.
 #[derive(Debug, Clone)]
 pub struct ComparedUnits {
     /// Calibrations of each unit in the order of time, one or more.
@@ -21,7 +22,11 @@ pub struct ComparedUnits {
 
 impl ComparedUnits {
     /// Those of `units` that are compared.
-    pub fn of(mut units: Vec<Vec<Calibrated>>) -> Self {
+    ///
+    /// # Errors
+    /// [`NoHistory`] for units of several models.
+    pub fn of(mut units: Vec<Vec<Calibrated>>) -> Result<Self, NoHistory> {
+        NoHistory::refuse_several_models(units.iter().flatten())?;
         let left_out = left_out(&units);
         if !left_out.is_empty() {
             let sources: BTreeSet<&str> = left_out.iter().map(|other| other.session.source.as_str()).collect();
@@ -30,7 +35,7 @@ impl ComparedUnits {
             }
             units.retain(|unit| !unit.is_empty());
         }
-        Self { units, left_out }
+        Ok(Self { units, left_out })
     }
 }
 

@@ -77,17 +77,6 @@ fn restate(calibrations: &mut [Calibrated]) {
     }
 }
 
-/// Units of a list.
-const SHOWN: usize = 8;
-
-/// The number of units, and the model and serial number of each; a model or a serial number may be empty.
-pub fn several_units(units: &[Vec<Calibrated>]) -> String {
-    let named = |unit: &Vec<Calibrated>| format!("model {:?} serial {:?}", unit[0].unit_model, unit[0].unit_serial);
-    let listed = units.iter().take(SHOWN).map(named).collect::<Vec<_>>().join(", ");
-    let more = if units.len() > SHOWN { format!(" and {} more", units.len() - SHOWN) } else { String::new() };
-    format!("{} units: {listed}{more}", units.len())
-}
-
 /// The calibrations unit by unit, each in the order of time.
 pub fn by_unit(calibrations: Vec<Calibrated>) -> Vec<Vec<Calibrated>> {
     let mut units: BTreeMap<(String, String), Vec<Calibrated>> = BTreeMap::new();

@@ -8,13 +8,19 @@ use centrical::history::{Reading, StationTest};
 use centrical::uncertainty::family_wise;
 
 use super::calibrated::{Calibrated, CalibratedParameter, years};
+use super::no_history::NoHistory;
 use crate::document::{FAMILY, Program, STATION_HISTORY_SCHEMA, StationHistoryReport, StationParameter};
 
-/// The history of the machine of `calibrations`, which are of one station.
-pub fn station_history(calibrations: &[impl Borrow<Calibrated>]) -> Option<StationHistoryReport> {
+/// The history of the machine of `calibrations`.
+///
+/// # Errors
+/// [`NoHistory`] without a calibration, and with those of several stations.
+pub fn station_history(calibrations: &[impl Borrow<Calibrated>]) -> Result<StationHistoryReport, NoHistory> {
     let calibrations: Vec<&Calibrated> = calibrations.iter().map(Borrow::borrow).collect();
-    let first = calibrations.iter().map(|c| c.date).min()?;
-    let last = calibrations.iter().map(|c| c.date).max()?;
+    NoHistory::refuse_several_stations(calibrations.iter().copied())?;
+    let dates = || calibrations.iter().map(|calibrated| calibrated.date);
+    let first = dates().min().ok_or(NoHistory::Nothing)?;
+    let last = dates().max().ok_or(NoHistory::Nothing)?;
     let units: BTreeSet<(&str, &str)> = calibrations.iter().map(|c| c.unit()).collect();
     let number: BTreeMap<(&str, &str), usize> = units.iter().enumerate().map(|(n, unit)| (*unit, n)).collect();
     let mut by_name: BTreeMap<(&str, &str), Vec<(&Calibrated, Reading)>> = BTreeMap::new();
@@ -38,7 +44,7 @@ pub fn station_history(calibrations: &[impl Borrow<Calibrated>]) -> Option<Stati
         parameter.changes = parameter.probability.is_some() && chance < FAMILY;
     }
     let is_tested = parameters.iter().any(|p| p.probability.is_some());
-    Some(StationHistoryReport {
+    Ok(StationHistoryReport {
         schema: STATION_HISTORY_SCHEMA,
         program: Program::this(),
         station: calibrations[0].station.clone(),

@@ -9,6 +9,8 @@ use nalgebra::{DMatrix, Vector3};
 
 use super::calibrated::{Basis, Calibrated, Finder, series, shared_changes, single, years};
 use super::comparable::ComparedSessions;
+use super::no_history::NoHistory;
+use super::read::by_unit;
 use crate::document::{
     DeviatingSession, DueDate, Program, ReadingHistory, SamenessSummary, UNIT_HISTORY_SCHEMA, UnitHistoryReport,
     UnitParameter, shown_readings,
@@ -51,10 +53,29 @@ const PARTS: [f64; 4] = [-1.0, -0.5, 0.5, 1.0];
 /// Readings that are looked at: of three newtonometers at rest, and at forces along three axes.
 const READINGS: usize = 3 * (1 + 3 * PARTS.len());
 
-/// What is expected in place of a `day` that a limit is to hold on, or a forecast is of, if it is before the last calibration.
-pub fn expected_day(day: Date, calibrations: &[Calibrated]) -> Option<String> {
-    let last = calibrations.last().filter(|last| day < last.date)?;
-    Some(format!("{}, the day of the last calibration, or a later one", last.date))
+/// The history of the one unit of `serial` among `calibrations`, which are in the order of time; without a serial number all are of that unit. Those of
+/// other units of its model give the component between sessions with it. The limit is to hold today, if no day is asked for.
+///
+/// # Errors
+/// [`NoHistory`] for several units or none, for a day before the last calibration, and where fewer than two have a parameter in common.
+pub fn unit_history_among(
+    calibrations: Vec<Calibrated>,
+    serial: Option<&str>,
+    request: UnitHistoryRequest,
+) -> Result<UnitHistoryReport, NoHistory> {
+    let is_meant = |unit: &Vec<Calibrated>| serial.is_none_or(|wanted| wanted == unit[0].unit_serial);
+    let (own, others): (Vec<_>, Vec<_>) = by_unit(calibrations).into_iter().partition(is_meant);
+    let [own] = own.as_slice() else { return Err(NoHistory::of_units(&own)) };
+    for (option, asked) in [("--on", request.on), ("--until", request.until)] {
+        if let (Some(day), Some(last)) = (asked, own.last())
+            && day < last.date
+        {
+            return Err(NoHistory::Early { option, day, last: last.date });
+        }
+    }
+    let others: Vec<_> = others.into_iter().filter(|unit| unit[0].unit_model == own[0].unit_model).collect();
+    let request = UnitHistoryRequest { on: request.on.or_else(|| Some(Date::today())), ..request };
+    unit_history(own, &others, request).ok_or(NoHistory::Few(own.len()))
 }
 
 /// The history of a unit by its `calibrations`, two or more, in the order of time. With `others`, the calibrations of other units of its type, unit by

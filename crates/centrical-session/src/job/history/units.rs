@@ -11,6 +11,7 @@ use super::calibrated::{Basis, Calibrated, Finder, Places, series, single};
 use super::check::spelling;
 use super::comparable::ComparedUnits;
 use super::limits::ParameterLimits;
+use super::no_history::NoHistory;
 use super::unit::{UnitHistoryRequest, common_names};
 use crate::document::{
     BatchSummary, BatchWithoutUnit, BeyondLimit, CapabilitySummary, NotComparedParameter, OutlyingUnit, Program,
@@ -32,14 +33,17 @@ const FAMILY: f64 = 0.05;
 /// Seed of the laws that are drawn.
 const SEED: u64 = 1;
 
-/// The history of units of one type by the calibrations that are compared. `None` without a parameter that these determine.
-pub fn units_history(compared: &ComparedUnits, request: &UnitsHistoryRequest) -> Option<UnitsHistoryReport> {
+/// The history of units of one type by the calibrations that are compared.
+///
+/// # Errors
+/// [`NoHistory`] without a parameter that these determine.
+pub fn units_history(compared: &ComparedUnits, request: &UnitsHistoryRequest) -> Result<UnitsHistoryReport, NoHistory> {
     let ComparedUnits { units, left_out } = compared;
     let all: Vec<&Calibrated> = units.iter().flatten().collect();
     let names = common_names(&all);
     let lasts: Vec<&Calibrated> = units.iter().filter_map(|unit| unit.last()).collect();
     if names.is_empty() {
-        return None;
+        return Err(NoHistory::NothingInCommon);
     }
     let stations = by_station(units);
     let at_one = of_batches(&stations, &lasts, request);
@@ -65,7 +69,7 @@ pub fn units_history(compared: &ComparedUnits, request: &UnitsHistoryRequest) ->
     let findings = over_time(by_parameter, level);
     let batches_differ = parameters.iter().any(|p| p.batches_differ);
     let are_compared = request.batches.is_empty() || is_by_batch;
-    Some(UnitsHistoryReport {
+    Ok(UnitsHistoryReport {
         schema: UNITS_HISTORY_SCHEMA,
         program: Program::this(),
         unit_model: lasts[0].unit_model.clone(),
