@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::thread;
 
-use centrical_report::{AlarmKind, alarm_text};
+use centrical_report::alarm_text;
 use centrical_session::WatchEvent;
 
 use crate::output::say;
@@ -23,11 +23,8 @@ impl Alarm {
 
     /// Raises an alarm if the event is one.
     pub fn hear(&self, event: &WatchEvent) {
-        match alarm_text(event) {
-            Some((AlarmKind::Plateau, found)) => self.raise("plateau", &found),
-            Some((AlarmKind::Frozen, found)) => self.raise("frozen", &found),
-            Some((AlarmKind::Failed, found)) => self.raise("failed", &found),
-            None => {}
+        if let Some((kind, found)) = alarm_text(event) {
+            self.raise(kind.name(), &found);
         }
     }
 

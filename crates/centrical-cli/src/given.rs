@@ -1,6 +1,10 @@
 //! Values of options, as commands take them.
 
-use centrical_session::{ColumnName, Dimension, NotThatQuantity, Quantity};
+use std::time::Duration;
+
+use centrical_session::{
+    ColumnName, Dimension, NotThatQuantity, PlanRequest, Quantity, TumbleRequest, WatchRequest, available_time,
+};
 
 /// A column: a number from 1, or a name.
 pub fn column_name(text: &str) -> Result<ColumnName, String> {
@@ -11,11 +15,32 @@ pub fn column_name(text: &str) -> Result<ColumnName, String> {
     }
 }
 
+/// Three columns.
+#[derive(Debug, Clone)]
+pub struct ThreeColumns(pub [ColumnName; 3]);
+
+impl ThreeColumns {
+    /// Columns with commas between them.
+    pub fn parse(text: &str) -> Result<Self, String> {
+        let columns = text.split(',').map(column_name).collect::<Result<Vec<_>, _>>()?;
+        let columns = <[ColumnName; 3]>::try_from(columns);
+        columns.map(Self).map_err(|found| format!("found {} columns, expected three", found.len()))
+    }
+}
+
 /// A sampling rate [Hz].
-pub fn frequency(text: &str) -> Result<f64, String> {
-    let rate = quantity(text, Dimension::Frequency).map_err(|wrong| wrong.to_string())?;
-    let is_rate = (1e-3..=1e9).contains(&rate);
-    is_rate.then_some(rate).ok_or_else(|| format!("found {text:?}, expected a rate from 1e-3 Hz to 1 GHz"))
+pub fn sampling_rate(text: &str) -> Result<f64, NotThatQuantity> {
+    written(text).sampling_rate()
+}
+
+/// Gravity at a place on Earth [m/s^2].
+pub fn gravity(text: &str) -> Result<f64, NotThatQuantity> {
+    written(text).gravity()
+}
+
+/// A largest distance from an axis of rotation [m].
+pub fn turning_radius(text: &str) -> Result<f64, NotThatQuantity> {
+    TumbleRequest::turning_radius(&written(text))
 }
 
 /// A largest error [m/s^2].
@@ -23,8 +48,7 @@ pub fn largest_error(text: &str) -> Result<f64, String> {
     if text.trim().parse::<f64>().is_ok() {
         return Err(format!("found {text:?}, expected an acceleration with its unit, such as '300 ug'"));
     }
-    let error = quantity(text, Dimension::Acceleration).map_err(|wrong| wrong.to_string())?;
-    if error > 0.0 { Ok(error) } else { Err(format!("found {text:?}, expected an acceleration above zero")) }
+    written(text).largest_error().map_err(|wrong| wrong.to_string())
 }
 
 /// A number above zero that stands for a quantity: no more than a million of its unit.
@@ -35,25 +59,46 @@ pub fn above_zero(text: &str) -> Result<f64, String> {
 
 /// A time [s].
 pub fn time(text: &str) -> Result<f64, NotThatQuantity> {
-    quantity(text, Dimension::Time)
+    written(text).si(Dimension::Time)
 }
 
-/// A quantity in SI.
-pub fn quantity(text: &str, dimension: Dimension) -> Result<f64, NotThatQuantity> {
-    Quantity::Text(text.to_owned()).si(dimension)
+/// "200 g", or a plain number in m/s^2.
+pub fn acceleration(text: &str) -> Result<f64, NotThatQuantity> {
+    written(text).si(Dimension::Acceleration)
 }
 
-/// A chance above 0 and below 1.
-pub fn chance(text: &str) -> Result<f64, String> {
-    let value = text.parse().ok().filter(|value| (0.0..1.0).contains(value) && *value > 0.0);
-    value.ok_or_else(|| format!("found {text:?}, expected a chance above 0 and below 1"))
+/// An angle [rad].
+pub fn angle(text: &str) -> Result<f64, NotThatQuantity> {
+    written(text).si(Dimension::Angle)
+}
+
+/// The time that a plan has [s].
+pub fn available(text: &str) -> Result<f64, NotThatQuantity> {
+    available_time(&written(text))
+}
+
+fn written(text: &str) -> Quantity {
+    Quantity::Text(text.to_owned())
+}
+
+/// A probability above 0 and below 1.
+pub fn probability(text: &str) -> Result<f64, String> {
+    let value = text.parse().ok().filter(|value| *value > 0.0 && *value < 1.0);
+    value.ok_or_else(|| format!("found {text:?}, expected a number above 0 and below 1"))
 }
 
 /// A duration in seconds, up to a day.
-pub fn seconds(text: &str) -> Result<f64, String> {
-    // A day at most.
-    let value = text.parse().ok().filter(|value| (0.0..=86400.0).contains(value));
-    value.ok_or_else(|| format!("found {text:?}, expected seconds from 0 to 86400"))
+pub fn seconds(text: &str) -> Result<Duration, String> {
+    WatchRequest::time(number(text)?)
+}
+
+/// A level of [K5.5].
+pub fn level(text: &str) -> Result<f64, String> {
+    PlanRequest::level(number(text)?)
+}
+
+fn number(text: &str) -> Result<f64, String> {
+    text.trim().parse().map_err(|_| format!("found {text:?}, expected a number"))
 }
 
 /// A group of parameters and its target standard uncertainty in the unit of the table.

@@ -11,7 +11,7 @@ use crate::printing::Printing;
 /// terminal.
 pub fn reading(session: &Session, printing: Printing) -> ProgressBar {
     const TEMPLATE: &str = "reading {bar:30} {percent}% of two passes, {bytes_per_sec}, {eta} left";
-    let bar = bar(2 * session.record_bytes(), printing);
+    let bar = bar(Some(2 * session.record_bytes()), printing.quiet);
     if let Ok(style) = ProgressStyle::with_template(TEMPLATE) {
         bar.set_style(style);
     }
@@ -20,7 +20,7 @@ pub fn reading(session: &Session, printing: Printing) -> ProgressBar {
 
 /// A bar over `count` mountings on standard error. indicatif hides it when that is not a terminal.
 pub fn mountings(doing: &str, count: usize, printing: Printing) -> ProgressBar {
-    let bar = bar(count as u64, printing);
+    let bar = bar(Some(count as u64), printing.quiet);
     if let Ok(style) = ProgressStyle::with_template("{msg} {bar:30} {pos}/{len} mountings, {eta} left") {
         bar.set_style(style);
         bar.set_message(doing.to_owned());
@@ -30,7 +30,7 @@ pub fn mountings(doing: &str, count: usize, printing: Printing) -> ProgressBar {
 
 /// A bar over `count` calibrations on standard error.
 pub fn calibrations(count: usize, printing: Printing) -> ProgressBar {
-    let bar = bar(count as u64, printing);
+    let bar = bar(Some(count as u64), printing.quiet);
     if let Ok(style) = ProgressStyle::with_template("calibrating {bar:30} {pos}/{len}, {eta} left") {
         bar.set_style(style);
     }
@@ -39,7 +39,7 @@ pub fn calibrations(count: usize, printing: Printing) -> ProgressBar {
 
 /// A bar over `count` sessions on standard error.
 pub fn sessions(count: usize, quiet: bool) -> ProgressBar {
-    let bar = bar(count as u64, Printing { json: false, quiet });
+    let bar = bar(Some(count as u64), quiet);
     if let Ok(style) = ProgressStyle::with_template("calibrating {bar:30} {pos}/{len} sessions, {eta} left") {
         bar.set_style(style);
     }
@@ -48,8 +48,7 @@ pub fn sessions(count: usize, quiet: bool) -> ProgressBar {
 
 /// A count of results on standard error: how many there are shows as folders are read.
 pub fn results(quiet: bool) -> ProgressBar {
-    let target = if quiet { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
-    let bar = ProgressBar::with_draw_target(None, target);
+    let bar = bar(None, quiet);
     if let Ok(style) = ProgressStyle::with_template("reading {pos} results, {elapsed}") {
         bar.set_style(style);
     }
@@ -70,7 +69,7 @@ pub fn counting(bar: &ProgressBar) -> impl Fn(usize) -> ControlFlow<()> + Sync {
 }
 
 /// A bar on standard error, or none for a quiet command.
-fn bar(length: u64, printing: Printing) -> ProgressBar {
-    let target = if printing.quiet { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
-    ProgressBar::with_draw_target(Some(length), target)
+fn bar(length: Option<u64>, quiet: bool) -> ProgressBar {
+    let target = if quiet { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
+    ProgressBar::with_draw_target(length, target)
 }

@@ -1,13 +1,16 @@
 //! A session or a record as Python gives it: by a path, or in memory.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-use centrical_session::{Bytes, Error, Folder, MountingFiles, Place, Session};
+use centrical_report::document_files;
+use centrical_session::{Bytes, Error, Folder, MountingFiles, Place, Session, refuse_inputs};
 use pyo3::prelude::*;
 use pyo3::pybacked::PyBackedBytes;
 
+use crate::result::CalibrationResult;
+
 /// The name of a file that is in memory, and its bytes.
-type Named = (String, PyBackedBytes);
+type NamedBytes = (String, PyBackedBytes);
 
 /// Names of record, telemetry and pulses of a mounting, where its experiment file does not name them.
 type NamesOfMounting = (String, Option<String>, Option<String>);
@@ -17,7 +20,7 @@ pub enum GivenSession {
     /// Its folder, or its experiment file.
     Path(PathBuf),
     /// The text of its experiment file and the path that it stands for, files in memory, and names of files for all mountings or for none.
-    InMemory(String, PathBuf, Vec<Named>, Vec<NamesOfMounting>),
+    InMemory(String, PathBuf, Vec<NamedBytes>, Vec<NamesOfMounting>),
 }
 
 impl<'py> FromPyObject<'_, 'py> for GivenSession {
@@ -67,7 +70,7 @@ pub enum GivenFile {
     /// On disk.
     Path(PathBuf),
     /// In memory.
-    InMemory(Named),
+    InMemory(NamedBytes),
 }
 
 impl<'py> FromPyObject<'_, 'py> for GivenFile {
@@ -89,6 +92,20 @@ impl GivenFile {
 }
 
 /// The folder with these files in memory: those of Python themselves, not copies.
-fn in_memory(folder: Folder, files: Vec<Named>) -> Folder {
+fn in_memory(folder: Folder, files: Vec<NamedBytes>) -> Folder {
     files.into_iter().fold(folder, |folder, (name, bytes)| folder.with(&name, Bytes::from_owner(bytes)))
+}
+
+/// A result, or its file, or a folder of such files.
+#[derive(FromPyObject)]
+pub enum GivenResult {
+    /// Read before.
+    Read(Py<CalibrationResult>),
+    /// A file or a folder.
+    Path(PathBuf),
+}
+
+/// Refuses a result and its documents in a folder over what is read.
+pub fn refuse_outputs(folder: &Path, inputs: &[&Path]) -> Result<(), Error> {
+    Ok(refuse_inputs(&[vec![folder.join("result.json")], document_files(folder)].concat(), inputs)?)
 }

@@ -4,8 +4,10 @@ use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
 use centrical::uncertainty::{Compensated, ModelInAxes};
-use centrical_report::{Emphasis, Language, Screen, UnitStatement, figures, terminal_table, unit_text, verdict_text};
-use centrical_session::{self as session, Axes, Error, ObjectionName, OutputSummary, SCHEMA};
+use centrical_report::{
+    Emphasis, Language, Screen, UnitStatement, figures, objection, terminal_table, unit_text, verdict_text,
+};
+use centrical_session::{self as session, Axes, Error, ObjectionName, OutputSummary};
 use nalgebra::Vector3;
 use numpy::{PyArray1, PyArray2, PyUntypedArrayMethods};
 use pyo3::IntoPyObjectExt;
@@ -56,18 +58,10 @@ impl CalibrationResult {
     #[staticmethod]
     fn from_json(py: Python, text: &[u8]) -> PyResult<Self> {
         guarded(|| {
-            let result: Result<session::CalibrationResult, _> = py.detach(|| serde_json::from_slice(text));
-            match result {
-                Ok(result) if result.schema == SCHEMA => Ok(result.into()),
-                Ok(result) => {
-                    let found = format!("schema {:?}", result.schema);
-                    Err(wrong_content(py, "schema", &found, &format!("{SCHEMA:?}")))
-                }
-                Err(error) => {
-                    let place = format!("line {}, column {}", error.line(), error.column());
-                    Err(wrong_content(py, &place, &error.to_string(), &format!("a result of schema {SCHEMA:?}")))
-                }
-            }
+            let text = std::str::from_utf8(text)
+                .map_err(|error| wrong_content(py, IN_MEMORY, &error.to_string(), "text in UTF-8"))?;
+            let result = py.detach(|| session::CalibrationResult::parse(Path::new(IN_MEMORY), text));
+            result.map(Self::from).map_err(|error| exception(py, &error))
         })
     }
 
@@ -130,16 +124,10 @@ impl CalibrationResult {
 
     /// The objections to the result: name and sentence of each.
     #[getter]
-    fn objections(&self) -> PyResult<Vec<(String, String)>> {
+    fn objections(&self) -> PyResult<Vec<(&'static str, String)>> {
         guarded(|| {
             let objections = self.result.objections();
-            let named = |objection: &session::ResultObjection| {
-                let name = serde_json::to_value(ObjectionName::from(objection)).ok();
-                let name = name.as_ref().and_then(|name| name.as_str()).unwrap_or_default().to_owned();
-                let screen = verdict_text(std::slice::from_ref(objection), true);
-                let sentence = screen.lines(usize::MAX / 2, usize::MAX).into_iter().next();
-                (name, sentence.map_or_else(String::new, |line| line.rest.trim().to_owned()))
-            };
+            let named = |reason| (ObjectionName::from(reason).word(), objection(reason, Language::English));
             Ok(objections.iter().map(named).collect())
         })
     }

@@ -9,9 +9,10 @@ use std::time::Duration;
 
 #[cfg(feature = "serve")]
 use centrical_live::{Running, Server, Watched};
-use centrical_report::{AlarmKind, alarm_text, write_history_plot};
+use centrical_report::{AlarmKind, alarm_text, frozen_text, write_history_plot};
 use centrical_session::{self as session, Error, LiveRequest, Session, WatchEnd, WatchEvent, WatchRequest, watch};
-use pyo3::exceptions::{PyRuntimeError, PyValueError};
+use pyo3::IntoPyObjectExt;
+use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 
 use crate::failure::exception;
@@ -32,7 +33,7 @@ enum Event {
 }
 
 /// A session that is watched. Its iteration gives pairs: `("plateau", line of JSON)`, `("waiting", note)`, and at last
-/// `("complete", result)` or `("stopped", None)`; and alarms, `("plateau-alarm", text)` and `("frozen-alarm", text)`.
+/// `("complete", result)` or `("stopped", None)`; and alarms, `("alarm", (name, text))`.
 #[pyclass(frozen, module = "centrical._native")]
 pub struct Watcher {
     events: Mutex<Option<Receiver<Event>>>,
@@ -67,15 +68,16 @@ impl Watcher {
         pool::claim()?;
         let page = serve.map(|address| Page::bind(&address, &serve_names)).transpose();
         let page = page.map_err(|error| exception(py, &error))?;
+        let time = |argument, seconds| WatchRequest::time(seconds).map_err(|wrong| words::refused(argument, wrong));
         let request = WatchRequest {
             out,
             false_alarm: words::probability("false_alarm", false_alarm)?,
             hold_out: words::plateaus("hold_out", &hold_out)?,
             hold_out_alarms,
             groups: targets,
-            interval: seconds("interval", interval)?,
-            quiet: seconds("quiet", quiet)?,
-            frozen: seconds("frozen", frozen)?,
+            interval: time("interval", interval)?,
+            quiet: time("quiet", quiet)?,
+            frozen: time("frozen", frozen)?,
             once,
             live: live_targets.map(|targets| LiveRequest { targets }),
         };
@@ -116,7 +118,7 @@ impl Watcher {
                 Ok(Event::End(end)) => return self.ended(py, end).map(Some),
                 Ok(Event::Plateau(line)) => ("plateau", text(py, &line)),
                 Ok(Event::Waiting(note)) => ("waiting", text(py, &note)),
-                Ok(Event::Alarm(kind, found)) => (alarm_event(kind), text(py, &found)),
+                Ok(Event::Alarm(kind, found)) => ("alarm", (kind.name(), found).into_py_any(py)?),
                 Err(RecvTimeoutError::Timeout) => {
                     if let Err(interruption) = py.check_signals() {
                         self.close(py);
@@ -237,24 +239,13 @@ impl Page {
     }
 }
 
-/// The name of the event of an alarm.
-fn alarm_event(kind: AlarmKind) -> &'static str {
-    match kind {
-        AlarmKind::Plateau => "plateau-alarm",
-        AlarmKind::Frozen => "frozen-alarm",
-        AlarmKind::Failed => "failed-alarm",
-    }
-}
-
 /// The event for the other thread; a plateau as its line of the history.
 fn message(event: &WatchEvent, out: &Path) -> Result<Option<Event>, Error> {
     match event {
         WatchEvent::Begun(_) | WatchEvent::Failed(_) => Ok(None),
         WatchEvent::Followed(model) => write_history_plot(model, out).map(|()| None),
         WatchEvent::Waiting(note) => Ok(Some(Event::Waiting((*note).to_owned()))),
-        WatchEvent::Frozen { file, age } => {
-            Ok(Some(Event::Waiting(format!("no new sample in {} for {:.0} s", file.display(), age.as_secs_f64()))))
-        }
+        WatchEvent::Frozen { file, age } => Ok(Some(Event::Waiting(frozen_text(file, *age)))),
         WatchEvent::Plateau(progress) => {
             let last = progress.plateaus.last();
             let entry = last.map(|last| last.entry(progress.plateaus.len(), progress.model, &progress.now));
@@ -265,12 +256,4 @@ fn message(event: &WatchEvent, out: &Path) -> Result<Option<Event>, Error> {
 
 fn text(py: Python, text: &str) -> Py<PyAny> {
     pyo3::types::PyString::new(py, text).into_any().unbind()
-}
-
-fn seconds(argument: &str, value: f64) -> PyResult<Duration> {
-    // A day at most.
-    if (0.0..=86400.0).contains(&value) {
-        return Ok(Duration::from_secs_f64(value));
-    }
-    Err(PyValueError::new_err(format!("{argument}: found {value}, expected seconds from 0 to 86400")))
 }

@@ -1,7 +1,7 @@
 //! Words and quantities as arguments.
 
 use centrical_report::Language;
-use centrical_session::{ColumnName, Dimension, Method, PlateauName, Quantity, TableFormat};
+use centrical_session::{ColumnName, Dimension, Method, NotThatQuantity, PlateauName, Quantity, TableFormat};
 use pyo3::exceptions::PyValueError;
 use pyo3::{FromPyObject, PyErr, PyResult};
 
@@ -36,7 +36,19 @@ impl Amount {
     /// # Errors
     /// As [`Amount::si`].
     pub fn optional(amount: Option<Self>, argument: &str, dimension: Dimension) -> PyResult<Option<f64>> {
-        amount.map(|amount| amount.si(argument, dimension)).transpose()
+        Self::checked(amount, argument, |quantity| quantity.si(dimension))
+    }
+
+    /// The value of one that need not be there, by a check of quantities.
+    ///
+    /// # Errors
+    /// `ValueError` when the check refuses it.
+    pub fn checked(
+        amount: Option<Self>,
+        argument: &str,
+        check: impl FnOnce(&Quantity) -> Result<f64, NotThatQuantity>,
+    ) -> PyResult<Option<f64>> {
+        amount.map(|amount| check(&amount.quantity()).map_err(|wrong| refused(argument, wrong))).transpose()
     }
 }
 
@@ -111,7 +123,7 @@ pub fn refused(argument: &str, why: impl std::fmt::Display) -> PyErr {
 
 /// A column by its name, or by its number from 1.
 #[derive(FromPyObject)]
-pub enum Named {
+pub enum GivenColumn {
     /// Its number.
     Number(usize),
     /// Its name.
@@ -119,19 +131,10 @@ pub enum Named {
 }
 
 /// The name of a column.
-pub fn column(argument: &str, name: Named) -> PyResult<ColumnName> {
+pub fn column(argument: &str, name: GivenColumn) -> PyResult<ColumnName> {
     match name {
-        Named::Number(0) => Err(refused(argument, "found 0, expected a number from 1 or a name")),
-        Named::Number(number) => Ok(ColumnName::Number(number)),
-        Named::Name(name) => Ok(ColumnName::Name(name)),
-    }
-}
-
-/// A sampling rate [Hz].
-pub fn sampling_rate(rate: Option<Amount>) -> PyResult<Option<f64>> {
-    let rate = Amount::optional(rate, "rate", Dimension::Frequency)?;
-    match rate.filter(|rate| rate.is_nan() || *rate <= 0.0) {
-        Some(rate) => Err(refused("rate", format!("found {rate}, expected a rate above zero"))),
-        None => Ok(rate),
+        GivenColumn::Number(0) => Err(refused(argument, "found 0, expected a number from 1 or a name")),
+        GivenColumn::Number(number) => Ok(ColumnName::Number(number)),
+        GivenColumn::Name(name) => Ok(ColumnName::Name(name)),
     }
 }

@@ -309,7 +309,8 @@ def test_what_a_history_is_not_asked(store):
     for wrong, said in (
         (lambda: ct.history(store, "years"), 'of: found \'years\', expected "list"'),
         (lambda: ct.history(store, "station", limit=1.0), "limit: found it for 'station', expected it for 'unit' alone"),
-        (lambda: ct.history(store, limit=0.0), "limit: found 0 m/s^2, expected one above zero"),
+        (lambda: ct.history(store, "station", confidence=0.95), "confidence: found it for 'station', expected it for 'unit' alone"),
+        (lambda: ct.history(store, limit=0.0), "limit: found 0.0, expected an acceleration above zero"),
         (lambda: ct.write_pages(store, "pages", limit="-1 ug"), "limit: found "),
         (lambda: ct.history(store, check=True), "check: found it for 'unit', expected it for 'list' alone"),
         (lambda: ct.history([], "unit"), "results: found none, expected a store"),

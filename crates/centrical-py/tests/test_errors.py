@@ -1,5 +1,6 @@
 """Wrong files: the exception, its fields, and nothing worse than an exception."""
 
+import json
 import pickle
 import shutil
 
@@ -69,6 +70,11 @@ def test_damaged_results(result, tmp_path):
         (tmp_path / "result.json").write_bytes(wrong)
         with pytest.raises(ct.InputError):
             ct.read_result(tmp_path / "result.json")
+    # What a file is not allowed to contradict, a text is not either.
+    document = json.loads(text)
+    document["parameters"][0]["standard_uncertainty"] *= 2.0
+    with pytest.raises(ct.InputError, match="the square of its standard uncertainty"):
+        result.native.from_json(json.dumps(document).encode())
 
 
 def test_errors_are_pickled(tmp_path):

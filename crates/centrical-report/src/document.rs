@@ -21,7 +21,8 @@ pub use self::content::{
     Tone,
 };
 pub(crate) use self::drift::drift_facts;
-pub(crate) use self::objection::{objection, rival};
+pub use self::objection::objection;
+pub(crate) use self::objection::rival;
 pub use self::report::report;
 pub(crate) use self::rests_on::{counts_as_exact, presuppositions, rests_on_sentence};
 pub(crate) use self::switch_on::switch_on_sentence;

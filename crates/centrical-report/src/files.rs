@@ -5,7 +5,8 @@ mod pages;
 mod plots;
 
 pub use self::documents::{
-    DocumentRequest, Documents, read_issuer, write_all_documents, write_documents, write_history_plot, write_noise,
+    DocumentRequest, Documents, document_files, read_issuer, write_all_documents, write_documents, write_history_plot,
+    write_noise,
 };
 pub use self::pages::{PagesRequest, StorePages, write_history_pages};
 pub use self::plots::write_plots;

@@ -19,13 +19,13 @@ mod terminal;
 
 pub use document::{
     Align, Attachment, Block, Column, Document, Layer, Margins, Opening, Row, Section, Table, TableKind, Tone,
-    certificate, report,
+    certificate, objection, report,
 };
 pub use evaluation::{Judged, UnitStatement, UnitVerdict, unscheduled};
 pub use figure::{Figure, chart_plots, comparison_plot, figures, frontier_plot, positions_figure, unit_history_plots};
 pub use files::{
-    DocumentRequest, Documents, PagesRequest, StorePages, read_issuer, write_all_documents, write_documents,
-    write_history_pages, write_history_plot, write_noise, write_plots,
+    DocumentRequest, Documents, PagesRequest, StorePages, document_files, read_issuer, write_all_documents,
+    write_documents, write_history_pages, write_history_plot, write_noise, write_plots,
 };
 pub use language::Language;
 pub use number::counted;

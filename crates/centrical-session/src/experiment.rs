@@ -42,6 +42,7 @@ pub use self::stated_attitudes::StatedAttitudes;
 pub(crate) use self::stated_attitudes::write_attitudes;
 pub(crate) use self::terms::{ASKEW, misalignments_left_out};
 pub(crate) use self::toml_path::TomlPath;
-pub use self::turning::{MOST_DISTANT, Turning};
+pub(crate) use self::turning::MOST_DISTANT;
+pub use self::turning::Turning;
 pub use self::unit::OutputUnit;
 pub(crate) use self::unit::RAW_OUTPUT;

@@ -32,15 +32,13 @@ pub use self::history::{
     RuleSet, UnitHistoryRequest, UnitsHistoryRequest, by_unit, chart, chart_of_one, history_up_to, read_batches,
     read_calibrations, read_limits, station_history, unit_history, unit_history_among, unit_means, units_history,
 };
-pub use self::history::{
-    add_result, add_results, check_store, collect_results, list_store, refuse_date, spelling, today,
-};
+pub use self::history::{add_result, add_results, check_store, collect_results, list_store, refuse_date, spelling};
 pub use self::init::{Draft, FillIn, InitRequest, init, time_column};
 pub use self::models::select_model;
 pub use self::montecarlo::{MonteCarloCase, MonteCarloRequest};
 pub use self::noise::{NoiseRequest, noise_of, noise_of_plateau};
 pub use self::observe::{subject, subject_of};
-pub use self::pattern::expanded;
+pub use self::pattern::matching_paths;
 pub use self::plan::{PlanRequest, USUAL_LEVELS, USUAL_TIMES, plan, read_plan, read_planning};
 pub use self::reduce::{Recorded, reduce, reduce_recorded, reduce_without_inputs};
 pub use self::reduced_session::write_reduced;

@@ -5,6 +5,7 @@ mod dimension;
 
 use std::borrow::Cow;
 use std::fmt;
+use std::ops::RangeInclusive;
 
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::{self, Deserialize, Deserializer, Visitor};
@@ -51,21 +52,42 @@ impl Quantity {
     }
 }
 
-/// Gravity on Earth with room to spare [m/s^2]: it is 9.76 to 9.84 m/s^2 at its surface.
-const GRAVITY: std::ops::RangeInclusive<f64> = 9.7..=9.9;
-
 impl Quantity {
-    /// Gravity at a place on Earth in SI.
+    /// Gravity at a place on Earth in SI: it is 9.76 to 9.84 m/s^2 at its surface.
     ///
     /// # Errors
     /// If it is not an acceleration from 9.7 to 9.9 m/s^2.
     pub fn gravity(&self) -> Result<f64, NotThatQuantity> {
-        let value = self.si(Dimension::Acceleration)?;
-        if GRAVITY.contains(&value) {
-            return Ok(value);
-        }
         let expected = "gravity on Earth, 9.7 to 9.9 m/s^2, such as \"9.81523 m/s^2\"";
-        Err(NotThatQuantity { found: self.to_string(), expected: expected.to_owned() })
+        self.within(Dimension::Acceleration, 9.7..=9.9, expected)
+    }
+
+    /// A sampling rate [Hz].
+    ///
+    /// # Errors
+    /// If it is not a frequency from 1 mHz to 1 GHz.
+    pub fn sampling_rate(&self) -> Result<f64, NotThatQuantity> {
+        self.within(Dimension::Frequency, 1e-3..=1e9, "a rate from 1e-3 Hz to 1 GHz")
+    }
+
+    /// A largest error of readings [m/s^2].
+    ///
+    /// # Errors
+    /// If it is not an acceleration above zero.
+    pub fn largest_error(&self) -> Result<f64, NotThatQuantity> {
+        self.within(Dimension::Acceleration, f64::MIN_POSITIVE..=f64::MAX, "an acceleration above zero")
+    }
+
+    /// The quantity in SI, if it is in a range.
+    pub(crate) fn within(
+        &self,
+        dimension: Dimension,
+        range: RangeInclusive<f64>,
+        expected: &str,
+    ) -> Result<f64, NotThatQuantity> {
+        let value = self.si(dimension)?;
+        let not = || NotThatQuantity { found: self.to_string(), expected: expected.to_owned() };
+        range.contains(&value).then_some(value).ok_or_else(not)
     }
 }
 

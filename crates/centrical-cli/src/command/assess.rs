@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use centrical_report::assessment_text;
 use centrical_session::{AssessmentRequest, Error, PredictionReport, STANDARD_GRAVITY, Session, assess};
 
-use crate::given::above_zero;
+use crate::given::{above_zero, probability};
 use crate::outcome::Outcome;
 use crate::printing::Printing;
 use crate::progress;
@@ -33,12 +33,6 @@ pub struct Arguments {
     range: Option<f64>,
     #[command(flatten)]
     printing: Printing,
-}
-
-/// A probability in (0, 1).
-pub fn probability(text: &str) -> Result<f64, String> {
-    let value = text.parse::<f64>().ok().filter(|p| *p > 0.0 && *p < 1.0);
-    value.ok_or_else(|| "expected a number above 0 and below 1".to_owned())
 }
 
 /// Runs the command.

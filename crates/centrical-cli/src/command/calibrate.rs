@@ -2,15 +2,14 @@
 
 use std::path::{Path, PathBuf};
 
-use centrical_report::{
-    Screen, UnitStatement, read_issuer, states_text, terminal_table, unit_text, verdict_text, write_all_documents,
-};
+use centrical_report::states_text;
 use centrical_session::{
-    CalibrationResult, Error, Method, Place, PlateauName, ResultObjection, Session, Store, add_result,
-    calibrate_without, claim_folder, refuse_date, refuse_inputs,
+    CalibrationResult, Error, Method, Place, PlateauName, Session, Store, add_result, calibrate_without, claim_folder,
+    refuse_date,
 };
 
-use crate::command::report::{Documents, is_within_limits, remark_other_days};
+use super::hand_over::refuse_outputs;
+use super::report::Documents;
 use crate::outcome::Outcome;
 use crate::output::remark;
 use crate::printing::Printing;
@@ -72,7 +71,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     };
     let laboratory = arguments.documents.laboratory.as_deref();
     let inputs = [session.files(), laboratory.into_iter().collect()].concat();
-    refuse_inputs(&outputs(out, file.as_deref()), &inputs)?;
+    refuse_outputs(file.as_deref(), out, &inputs)?;
     if let Some(store) = arguments.store.as_deref() {
         Store::refuse_inputs(store, &inputs)?;
         refuse_date(&session.file, &session.date)?;
@@ -90,30 +89,9 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     if let Some(store) = &arguments.store {
         add_result(store, &result, false)?;
     }
-    let issuer = laboratory.map(|file| read_issuer(file, &result)).transpose()?;
-    remark_other_days(issuer.as_ref().and_then(|issuer| issuer.other_days(&result)).as_deref());
-    if let Some(folder) = out {
-        write_all_documents(&result, issuer.as_ref(), arguments.documents.language.into(), folder)?;
-    }
+    let outcome = arguments.documents.hand_over(&result, arguments.printing, out, file.as_deref());
     drop(claim);
-    let objections = result.objections();
-    let unit = issuer.and_then(|issuer| issuer.unit);
-    let text = || report(&result, &objections, unit.as_ref(), file.as_deref());
-    arguments.printing.show(text, || result.to_json())?;
-    if arguments.printing.json {
-        // The result does not hold what the laboratory's limits say of the unit.
-        if let Some(unit) = &unit {
-            remark(&unit_text(unit));
-        }
-    }
-    Ok(Outcome::acceptable(objections.is_empty() && is_within_limits(unit.as_ref())))
-}
-
-/// The files that are written, but for plots.
-pub fn outputs(out: Option<&Path>, result: Option<&Path>) -> Vec<PathBuf> {
-    let documents = ["report.html", "certificate.pdf", "certificate.xml"];
-    let documents = out.into_iter().flat_map(|folder| documents.map(|name| folder.join(name)));
-    result.map(Path::to_owned).into_iter().chain(documents).collect()
+    outcome
 }
 
 /// The current folder may be anybody's: a result there is replaced by one of the same unit alone.
@@ -130,24 +108,4 @@ pub fn refuse_another_unit(file: &Path, session: &Session) -> Result<(), Error> 
     }
     let expected = format!("{own}, or no such file: give a folder with --out, or remove it");
     Err(Error::content(file, Place::Whole, there, expected))
-}
-
-/// The verdict, then what it rests on, and the `written` file or folder.
-pub fn report(
-    result: &CalibrationResult,
-    objections: &[ResultObjection],
-    unit: Option<&UnitStatement>,
-    written: Option<&Path>,
-) -> Screen {
-    let mut screen = verdict_text(objections, result.is_checked());
-    if let Some(unit) = unit {
-        screen.add(unit_text(unit));
-    }
-    screen.gap();
-    screen.add(terminal_table(result));
-    if let Some(written) = written {
-        screen.gap();
-        screen.say(0, &format!("Written to {}", written.display()));
-    }
-    screen
 }

@@ -3,10 +3,9 @@
 use std::path::PathBuf;
 
 use centrical_report::{compensation_text, verdict_text};
-use centrical_session::{
-    Axes, CompensationRequest, Dimension, Error, NotThatQuantity, Quantity, compensate, unwatched,
-};
+use centrical_session::{Axes, CompensationRequest, Error, compensate, unwatched};
 
+use crate::given::acceleration;
 use crate::outcome::Outcome;
 use crate::printing::Printing;
 
@@ -61,9 +60,4 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     };
     arguments.printing.show(text, || compensated.report(&request, &certificate, &objections).to_json())?;
     Ok(Outcome::acceptable(compensated.outside == 0 && objections.is_empty()))
-}
-
-/// "200 g", or a plain number in m/s^2.
-pub fn acceleration(text: &str) -> Result<f64, NotThatQuantity> {
-    Quantity::Text(text.to_owned()).si(Dimension::Acceleration)
 }

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use centrical_report::Screen;
-use centrical_session::{Draft, Error, InitRequest, Place, init, unwatched, write_whole};
+use centrical_session::{Draft, Error, InitRequest, init, unwatched, write_whole};
 use clap::ValueEnum;
 
 use crate::outcome::Outcome;
@@ -39,21 +39,9 @@ enum Positions {
 
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
-    if let Some(file) = arguments.out.as_ref().filter(|file| file.exists()) {
-        return Err(Error::content(
-            file,
-            Place::Whole,
-            "a file that exists",
-            "a new file: no draft replaces what was written",
-        ));
-    }
-    let folder = match arguments.out.as_deref().and_then(Path::parent) {
-        Some(folder) if !folder.as_os_str().is_empty() => folder.to_owned(),
-        _ => PathBuf::from("."),
-    };
     let six_positions = arguments.positions == Some(Positions::Six);
-    let (inputs, tumble) = (arguments.inputs.clone(), arguments.tumble.clone());
-    let draft = init(&InitRequest { inputs, folder, tumble, six_positions }, &unwatched)?;
+    let (inputs, out, tumble) = (arguments.inputs.clone(), arguments.out.clone(), arguments.tumble.clone());
+    let draft = init(&InitRequest { inputs, out, tumble, six_positions }, &unwatched)?;
     if let Some(file) = &arguments.out {
         write_whole(file, draft.text.as_bytes())?;
     }

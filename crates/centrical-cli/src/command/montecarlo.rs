@@ -5,8 +5,7 @@ use std::path::PathBuf;
 use centrical_report::monte_carlo_text;
 use centrical_session::{Error, MonteCarloCase, MonteCarloRequest, Session, read_plan};
 
-use super::assess::probability;
-use crate::given::above_zero;
+use crate::given::{above_zero, probability};
 use crate::outcome::Outcome;
 use crate::printing::Printing;
 use crate::progress;

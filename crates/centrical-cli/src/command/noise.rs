@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use centrical_report::{Emphasis, Screen, noise_table, noise_warnings, write_noise};
 use centrical_session::{ColumnName, Error, Estimator, Folder, NoiseRequest, PlateauName, noise_of, unwatched};
 
-use crate::given::{column_name, frequency, time};
+use crate::given::{column_name, sampling_rate, time};
 use crate::outcome::Outcome;
 use crate::output::remark_unused_time;
 use crate::printing::Printing;
@@ -26,7 +26,7 @@ pub struct Arguments {
     #[arg(long, value_name = "COLUMN", default_value = "t", value_parser = column_name)]
     time: ColumnName,
     /// Sampling rate of a record without a time column, such as "250 Hz"
-    #[arg(long, value_name = "QUANTITY", value_parser = frequency, conflicts_with = "time")]
+    #[arg(long, value_name = "QUANTITY", value_parser = sampling_rate, conflicts_with = "time")]
     rate: Option<f64>,
     /// Columns of readings: names, or numbers from 1
     #[arg(long, value_name = "COLUMNS", value_delimiter = ',', default_value = "f1,f2,f3", value_parser = column_name)]

@@ -4,11 +4,10 @@ use std::path::PathBuf;
 
 use centrical_report::{frontier_plot, plan_text};
 use centrical_session::{
-    Error, NotThatQuantity, PlanRequest, PredictionReport, Quantity, USUAL_LEVELS, USUAL_TIMES, available_time, plan,
-    unwatched, write_whole,
+    Error, PlanRequest, PredictionReport, USUAL_LEVELS, USUAL_TIMES, plan, unwatched, write_whole,
 };
 
-use super::assess::probability;
+use crate::given::{available, level, probability};
 use crate::outcome::Outcome;
 use crate::printing::Printing;
 
@@ -20,7 +19,7 @@ pub struct Arguments {
     /// Plan file: an experiment.toml with [candidates], [cost] and [target] in place of mountings
     plan: PathBuf,
     /// Time available, in place of the one in the plan file: "8 h"
-    #[arg(long, value_name = "TIME", value_parser = time)]
+    #[arg(long, value_name = "TIME", value_parser = available)]
     time: Option<f64>,
     /// Write the schedule as a plan file for observe, montecarlo and simulate
     #[arg(short, long, value_name = "TOML")]
@@ -63,13 +62,4 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     }
     arguments.printing.show(|| plan_text(&report), || report.to_json())?;
     Ok(Outcome::acceptable(report.is_acceptable()))
-}
-
-fn time(text: &str) -> Result<f64, NotThatQuantity> {
-    available_time(&Quantity::Text(text.to_owned()))
-}
-
-fn level(text: &str) -> Result<f64, String> {
-    let value = text.trim().parse().ok().filter(|value| (0.0..=1e6).contains(value));
-    value.ok_or_else(|| format!("found {text:?}, expected a multiple of Omega*^2, zero or more"))
 }

@@ -5,10 +5,10 @@ use std::path::{Path, PathBuf};
 use centrical_report::{
     DocumentRequest, Emphasis, Language, Screen, UnitStatement, unit_text, verdict_text, write_documents,
 };
-use centrical_session::{Axes, CalibrationResult, DocumentKind, DocumentsReport, Error, Place};
+use centrical_session::{Axes, CalibrationResult, DocumentsReport, Error, Place};
 use clap::ValueEnum;
 
-use crate::command::compensate::acceleration;
+use crate::given::acceleration;
 use crate::outcome::Outcome;
 use crate::output::remark;
 use crate::printing::Printing;
@@ -106,11 +106,7 @@ impl From<LanguageName> for Language {
 
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
-    if written(arguments).is_empty() && !arguments.printing.json {
-        let expected = "--html, --pdf, --dcc or --code with its name";
-        return Err(Error::content(&arguments.result, Place::Whole, "no document asked for", expected));
-    }
-    let documents = write_documents(&DocumentRequest {
+    let request = DocumentRequest {
         result: arguments.result.clone(),
         html: arguments.html.clone(),
         history: arguments.history.clone(),
@@ -123,7 +119,12 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
         laboratory: arguments.documents.laboratory.clone(),
         axes: arguments.documents.axes.as_deref().map(Axes::from),
         language: arguments.documents.language.into(),
-    })?;
+    };
+    if request.written().is_empty() && !arguments.printing.json {
+        let expected = "--html, --pdf, --dcc or --code with its name";
+        return Err(Error::content(&arguments.result, Place::Whole, "no document asked for", expected));
+    }
+    let documents = write_documents(&request)?;
     remark_other_days(documents.other_days.as_deref());
     let (result, unit) = (documents.result, documents.unit);
     let objections = result.objections();
@@ -135,7 +136,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
         screen
     };
     let within = unit.as_ref().map(UnitStatement::is_within);
-    let json = || DocumentsReport::of(&arguments.result, &result, &written(arguments), within).to_json();
+    let json = || DocumentsReport::of(&arguments.result, &result, &request.written(), within).to_json();
     arguments.printing.show(text, json)?;
     Ok(Outcome::acceptable(objections.is_empty() && is_within))
 }
@@ -152,15 +153,4 @@ pub fn remark_other_days(words: Option<&str>) {
 /// Whether the unit keeps the limits that were asked for; limits that were not are kept.
 pub fn is_within_limits(unit: Option<&UnitStatement>) -> bool {
     unit.is_none_or(UnitStatement::is_within)
-}
-
-/// The documents that were asked for.
-fn written(arguments: &Arguments) -> Vec<(DocumentKind, &Path)> {
-    let documents = [
-        (DocumentKind::Report, &arguments.html),
-        (DocumentKind::Certificate, &arguments.pdf),
-        (DocumentKind::DigitalCertificate, &arguments.dcc),
-        (DocumentKind::Code, &arguments.code),
-    ];
-    documents.into_iter().filter_map(|(kind, path)| Some((kind, path.as_deref()?))).collect()
 }

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use std::sync::atomic::Ordering;
 
 use centrical_report::Screen;
-use centrical_session::{Error, FailedSession, Method, SeriesRequest, SeriesSummary, calibrate_series, expanded};
+use centrical_session::{Error, FailedSession, Method, SeriesRequest, SeriesSummary, calibrate_series, matching_paths};
 
 use crate::interruption::asked_to_end;
 use crate::outcome::Outcome;
@@ -66,7 +66,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
         rows_only: arguments.rows_only,
         reduced: arguments.reduced,
     };
-    let sessions = expanded(&arguments.sessions)?;
+    let sessions = matching_paths(&arguments.sessions)?;
     let bar = progress::sessions(sessions.len(), arguments.printing.quiet);
     let asked = asked_to_end();
     let summary = calibrate_series(&sessions, &request, &|count| {

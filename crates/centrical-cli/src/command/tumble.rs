@@ -1,16 +1,77 @@
 //! `centrical tumble RECORD...|SESSION`: a unit that was turned by hand or on a table, calibrated by gravity alone.
 
-mod arguments;
-mod hand_over;
-
 use std::path::{Path, PathBuf};
 
-use centrical_session::{Error, Method, Session, calibrate, claim_folder, tumble, unwatched};
+use centrical_session::{
+    ColumnName, Error, Folder, Method, Place, STANDARD_GRAVITY, Session, StatedAttitudes, TumbleRequest, calibrate,
+    claim_folder, tumble, unwatched,
+};
 
-pub use self::arguments::Arguments;
-use self::hand_over::RESULT;
+use super::hand_over::refuse_outputs;
+use super::report::Documents;
+use crate::given::{ThreeColumns, acceleration, angle, column_name, gravity, sampling_rate, turning_radius};
 use crate::outcome::Outcome;
 use crate::output::remark_unused_time;
+use crate::printing::Printing;
+
+/// Calibrate a unit by gravity alone, from records in which it is turned and rests again and again.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "Example: centrical tumble examples/tumble/record.csv --gravity 9.81523 --out tumbled")]
+pub struct Arguments {
+    /// Records in any supported format, of one unit; or a session with [[tumble]], a folder or its experiment.toml, whose rests alone are taken
+    #[arg(required = true, value_name = "RECORDS|SESSION")]
+    records: Vec<PathBuf>,
+    /// Time column, in s: its name, or its number from 1 [default: t]
+    #[arg(long, value_name = "COLUMN", value_parser = column_name)]
+    time: Option<ColumnName>,
+    /// Sampling rate of records without a time column, such as "250 Hz"
+    #[arg(long, value_name = "QUANTITY", value_parser = sampling_rate, conflicts_with = "time")]
+    rate: Option<f64>,
+    /// Columns of newtonometers 1, 2, 3: names, or numbers from 1 [default: f1,f2,f3]
+    #[arg(long, value_name = "COLUMNS", value_parser = ThreeColumns::parse)]
+    readings: Option<ThreeColumns>,
+    /// Unit of the readings: of acceleration, or "counts" or "V", whose scale and bias are found [default: m/s^2]
+    #[arg(long, value_parser = TumbleRequest::unit)]
+    unit: Option<String>,
+    /// Gravity at the place, such as "9.81523 m/s^2" [default: 9.80665 m/s^2, uncertain by 0.02 m/s^2]
+    #[arg(long, value_name = "QUANTITY", value_parser = gravity)]
+    gravity: Option<f64>,
+    /// Standard uncertainty of gravity [default: 0.02 m/s^2, or 0 for a gravity that is given]
+    #[arg(long, value_name = "QUANTITY", value_parser = acceleration)]
+    gravity_uncertainty: Option<f64>,
+    /// Attitudes in which the unit was laid down: a table of up_1, up_2, up_3 in axes of the case, or "cube" for its faces,
+    /// edges and corners
+    #[arg(long, value_name = "FILE|cube", requires = "attitude_uncertainty")]
+    attitudes: Option<PathBuf>,
+    /// Standard uncertainty of these attitudes, such as "0.1 deg"
+    #[arg(long, value_name = "QUANTITY", value_parser = angle, requires = "attitudes")]
+    attitude_uncertainty: Option<f64>,
+    /// Take slow rotation too, up to 3 deg/s: largest distance of the proof masses from its axis, such as "50 mm"
+    #[arg(long, value_name = "QUANTITY", value_parser = turning_radius)]
+    turning_radius: Option<f64>,
+    /// Terms of the error model, as in experiment.toml
+    #[arg(long, value_name = "TERMS", value_delimiter = ',', default_values_t = TumbleRequest::USUAL_TERMS.map(str::to_owned))]
+    terms: Vec<String>,
+    /// Model of the unit
+    #[arg(long)]
+    model: Option<String>,
+    /// Serial number of the unit
+    #[arg(long)]
+    serial: Option<String>,
+    /// Date of the records, such as 2026-11-23
+    #[arg(long)]
+    date: Option<String>,
+    /// Folder for result.json, the rests as a session, the report and its plots, created if absent
+    #[arg(short, long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    #[command(flatten)]
+    printing: Printing,
+    #[command(flatten)]
+    documents: Documents,
+}
+
+/// The result in the folder.
+const RESULT: &str = "result.json";
 
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
@@ -28,10 +89,13 @@ fn of_records(arguments: &Arguments) -> Result<Outcome, Error> {
     }
     let out = arguments.out.as_deref();
     let claim = out.map(claim_folder).transpose()?;
-    arguments.refuse_inputs(request.inputs())?;
+    arguments.refuse_outputs(request.inputs())?;
     let mut tumble = tumble(&request, out.unwrap_or(Path::new("")), &unwatched)?;
     tumble.result = arguments.documents.in_axes(tumble.result, &request.files[0])?;
-    let outcome = arguments.hand_over(&tumble.result, |folder| tumble.write(&request, folder));
+    if let Some(folder) = out {
+        tumble.write(&request, folder)?;
+    }
+    let outcome = arguments.documents.hand_over(&tumble.result, arguments.printing, out, out);
     drop(claim);
     outcome
 }
@@ -42,10 +106,78 @@ fn of_session(arguments: &Arguments, path: &Path) -> Result<Outcome, Error> {
     let session = Session::read(path)?.off_arm(&arguments.terms)?;
     let out = arguments.out.as_deref();
     let claim = out.map(claim_folder).transpose()?;
-    arguments.refuse_inputs(session.files().into_iter())?;
+    arguments.refuse_outputs(session.files().into_iter())?;
     let result = calibrate(&session, Method::Exact, &unwatched)?;
     let result = arguments.documents.in_axes(result, path)?;
-    let outcome = arguments.hand_over(&result, |folder| result.write(&folder.join(RESULT)));
+    if let Some(folder) = out {
+        result.write(&folder.join(RESULT))?;
+    }
+    let outcome = arguments.documents.hand_over(&result, arguments.printing, out, out);
     drop(claim);
     outcome
+}
+
+impl Arguments {
+    /// What is to be made of records.
+    fn request(&self) -> Result<TumbleRequest, Error> {
+        let uncertain = if self.gravity.is_some() { 0.0 } else { TumbleRequest::GRAVITY_ANYWHERE };
+        let readings =
+            self.readings.clone().map_or_else(|| ["f1", "f2", "f3"].map(named), |ThreeColumns(columns)| columns);
+        Ok(TumbleRequest {
+            files: self.records.clone(),
+            folder: Folder::default(),
+            time: self.time.clone().unwrap_or_else(|| named("t")),
+            rate: self.rate,
+            readings,
+            unit: self.unit.clone().unwrap_or_else(|| "m/s^2".to_owned()),
+            gravity: self.gravity.unwrap_or(STANDARD_GRAVITY),
+            gravity_uncertainty: self.gravity_uncertainty.unwrap_or(uncertain),
+            attitudes: (self.attitudes.iter().zip(self.attitude_uncertainty))
+                .map(|(name, uncertainty)| StatedAttitudes::named(name, uncertainty))
+                .next()
+                .transpose()?,
+            turning_radius: self.turning_radius,
+            terms: self.terms.clone(),
+            model: self.model.clone().unwrap_or_default(),
+            serial: self.serial.clone().unwrap_or_default(),
+            date: self.date.clone().unwrap_or_default(),
+        })
+    }
+
+    /// Refuses outputs over what is read.
+    fn refuse_outputs<'a>(&'a self, inputs: impl Iterator<Item = &'a Path>) -> Result<(), Error> {
+        let inputs: Vec<&Path> = inputs.chain(self.documents.laboratory.as_deref()).collect();
+        let result = self.out.as_ref().map(|folder| folder.join(RESULT));
+        refuse_outputs(result.as_deref(), self.out.as_deref(), &inputs)
+    }
+
+    /// Columns, unit, place and attitudes of a session stand in its experiment file.
+    fn refuse_what_a_session_states(&self, session: &Path) -> Result<(), Error> {
+        let given = [
+            ("--time", self.time.is_some()),
+            ("--rate", self.rate.is_some()),
+            ("--readings", self.readings.is_some()),
+            ("--unit", self.unit.is_some()),
+            ("--gravity", self.gravity.is_some()),
+            ("--gravity-uncertainty", self.gravity_uncertainty.is_some()),
+            ("--attitudes", self.attitudes.is_some()),
+            ("--turning-radius", self.turning_radius.is_some()),
+            ("--model", self.model.is_some()),
+            ("--serial", self.serial.is_some()),
+            ("--date", self.date.is_some()),
+        ];
+        match given.into_iter().find(|(_, is_given)| *is_given) {
+            Some((option, _)) => Err(Error::content(
+                session,
+                Place::Whole,
+                format!("{option} beside a session"),
+                "the same in its experiment file",
+            )),
+            None => Ok(()),
+        }
+    }
+}
+
+fn named(name: &str) -> ColumnName {
+    ColumnName::Name(name.to_owned())
 }

@@ -257,6 +257,12 @@ fn a_certificate_of_rests_names_no_centrifuge() {
         let printed = fs::read_to_string(copy.out().join("certificate.html")).unwrap();
         assert!(printed.contains("gravity in the fitted attitudes") && !printed.contains("plateau’s own speed"));
     }
+    // Beside the document, which does not hold it, stands why the command ends with 1.
+    let run = copy.run(&["tumble", &record, "--gravity", "9.81523 m/s^2", "--laboratory", &laboratory, "--json"]);
+    assert_eq!(run.status.code(), Some(1));
+    serde_json::from_slice::<Value>(&run.stdout).unwrap();
+    let remark = String::from_utf8_lossy(&run.stderr);
+    assert!(remark.contains("UNIT"), "{remark}");
 }
 
 #[test]

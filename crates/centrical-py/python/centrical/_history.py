@@ -42,7 +42,7 @@ def history(
     limit: Quantity | None = None,
     on: str | None = None,
     until: str | None = None,
-    confidence: float = 0.95,
+    confidence: float | None = None,
     trend: bool = True,
     together: bool = False,
     out: Path | None = None,
@@ -69,7 +69,7 @@ def history(
     until
         Of a unit: day of the forecasts, ``"2027-10-05"``; a year after the last calibration by default.
     confidence
-        Of a unit: probability of all intervals.
+        Of a unit: probability of all intervals; 0.95 by default.
     trend
         Of a unit: without it, parameters are constant but for the scatter between sessions.
     together
@@ -96,7 +96,7 @@ def history(
     chosen = (model, serial, station)
     given: dict[str, dict[str, object]] = {
         "list": {"check": check},
-        "unit": {"limit": limit, "on": on, "until": until, "confidence": confidence != 0.95, "trend": not trend, "together": together, "out": out},
+        "unit": {"limit": limit, "on": on, "until": until, "confidence": confidence, "trend": not trend, "together": together, "out": out},
         "units": {"laboratory": laboratory, "batches": batches},
         "station": {},
     }

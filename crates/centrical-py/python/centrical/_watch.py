@@ -14,10 +14,6 @@ if TYPE_CHECKING:
     from ._types import Path
 
 
-#: The events that are alarms, and what each is about.
-ALARMS = {"plateau-alarm": "plateau", "frozen-alarm": "frozen", "failed-alarm": "failed"}
-
-
 class Watch(Iterator[Document]):
     """The plateaus of a session as they come: a document each, a line of ``watch-history.jsonl``.
 
@@ -36,12 +32,13 @@ class Watch(Iterator[Document]):
         for event, content in self._native:
             if isinstance(content, _native.CalibrationResult):
                 self.result = Result(content)
+            elif isinstance(content, tuple):
+                if self._on_alarm is not None:
+                    self._on_alarm(*content)
             elif event == "plateau" and content is not None:
                 return Document(content)
             elif event == "waiting":
                 self.waiting = content
-            elif self._on_alarm is not None and content is not None and event in ALARMS:
-                self._on_alarm(ALARMS[event], content)
         raise StopIteration
 
     def close(self) -> None:

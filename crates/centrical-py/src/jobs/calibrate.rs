@@ -1,12 +1,12 @@
 //! `calibrate`: from a session folder to calibrated parameters.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use centrical_report::{read_issuer, write_all_documents};
-use centrical_session::{calibrate_without, claim_folder, refuse_inputs};
+use centrical_session::{calibrate_without, claim_folder};
 use pyo3::prelude::*;
 
-use crate::given::GivenSession;
+use crate::given::{GivenSession, refuse_outputs};
 use crate::progress::{self, Shown};
 use crate::result::CalibrationResult;
 use crate::words;
@@ -29,8 +29,9 @@ pub fn calibrate(
         let session = session.read()?;
         work.expect(2 * session.record_bytes());
         let claim = out.as_deref().map(claim_folder).transpose()?;
-        let inputs = [session.files(), laboratory.as_deref().into_iter().collect()].concat();
-        refuse_inputs(&outputs(out.as_deref()), &inputs)?;
+        if let Some(folder) = &out {
+            refuse_outputs(folder, &[session.files(), laboratory.as_deref().into_iter().collect()].concat())?;
+        }
         let result = calibrate_without(&session, &hold_out, method, &|bytes| work.advance(bytes))?;
         if let Some(folder) = &out {
             result.write(&folder.join("result.json"))?;
@@ -45,10 +46,4 @@ pub fn calibrate(
     let mut result = CalibrationResult::from(result);
     result.unit = unit;
     Ok(result)
-}
-
-/// The files that are written, but for plots.
-fn outputs(out: Option<&Path>) -> Vec<PathBuf> {
-    let names = ["result.json", "report.html", "certificate.pdf", "certificate.xml"];
-    out.into_iter().flat_map(|folder| names.map(|name| folder.join(name))).collect()
 }

@@ -3,29 +3,18 @@
 use std::path::PathBuf;
 
 use centrical_report::comparison_plot;
-use centrical_session::{
-    CalibrationResult as Calibrated, ComparisonRequest, advance, compare_results, refuse_inputs, write_whole,
-};
+use centrical_session::{CalibrationResult, ComparisonRequest, advance, compare_results, refuse_inputs, write_whole};
 use pyo3::prelude::*;
 
+use crate::given::GivenResult;
 use crate::progress;
-use crate::result::CalibrationResult;
 use crate::words::refused;
-
-/// A result by its file, or one that was read.
-#[derive(FromPyObject)]
-pub enum Compared {
-    /// Read before.
-    Read(Py<CalibrationResult>),
-    /// Its file.
-    File(PathBuf),
-}
 
 /// `centrical-comparison/1`.
 #[pyfunction]
 pub fn compare(
     py: Python,
-    results: Vec<Compared>,
+    results: Vec<GivenResult>,
     years: Option<f64>,
     other_units: bool,
     svg: Option<PathBuf>,
@@ -39,11 +28,11 @@ pub fn compare(
         for (n, result) in (1..).zip(&results) {
             advance(&|done| work.advance(done), 0)?;
             named.push(match result {
-                Compared::File(file) => {
+                GivenResult::Path(file) => {
                     files.push(file.clone());
-                    (file.clone(), Calibrated::read(file)?)
+                    (file.clone(), CalibrationResult::read(file)?)
                 }
-                Compared::Read(result) => (PathBuf::from(format!("result {n}")), result.get().result.clone()),
+                GivenResult::Read(result) => (PathBuf::from(format!("result {n}")), result.get().result.clone()),
             });
         }
         let named: Vec<_> = named.iter().map(|(file, result)| (file.as_path(), result)).collect();

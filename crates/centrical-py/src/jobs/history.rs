@@ -5,16 +5,16 @@ use std::path::PathBuf;
 
 use centrical_report::{PagesRequest, chart_plots, unit_history_plots, write_history_pages, write_plots};
 use centrical_session::{
-    Added, Calibrated, ChartLimits, ChartRequest, ComparedUnits, Date, Depth, Dimension, Error, Failure, OnProgress,
-    ParameterLimits, Past, Place, Row, RuleSet, Selection, Store, UnitHistoryRequest, UnitsHistoryRequest, add_result,
-    add_results, advance, by_unit, chart_of_one, check_store, list_store, read_batches, read_calibrations, read_limits,
-    station_history, today, unit_history_among, units_history,
+    Added, Calibrated, ChartLimits, ChartRequest, ComparedUnits, Date, Depth, Error, Failure, OnProgress,
+    ParameterLimits, Past, Place, Quantity, Row, RuleSet, Selection, Store, UnitHistoryRequest, UnitsHistoryRequest,
+    add_result, add_results, advance, by_unit, chart_of_one, check_store, list_store, read_batches, read_calibrations,
+    read_limits, station_history, unit_history_among, units_history,
 };
 use pyo3::exceptions::PyUserWarning;
 use pyo3::prelude::*;
 
+use crate::given::GivenResult;
 use crate::progress::{self, Shown};
-use crate::result::CalibrationResult;
 use crate::words::{Amount, one_of, refused};
 
 /// The calibrations in the order of time, with a warning for those that have no day for a date.
@@ -39,29 +39,20 @@ fn read(results: &[PathBuf], selection: &Selection, progress: OnProgress) -> Res
 /// Model and serial number of the unit, and the station.
 type Chosen = (Option<String>, Option<String>, Option<String>);
 
-/// A result, or its file, or a folder of such files.
-#[derive(FromPyObject)]
-pub enum Given {
-    /// A result in memory.
-    Read(Py<CalibrationResult>),
-    /// A file or a folder.
-    File(PathBuf),
-}
-
 /// Adds results to a store: how many were new, how many known.
 #[pyfunction]
 pub fn add_to_store(
     py: Python,
     store: PathBuf,
-    results: Vec<Given>,
+    results: Vec<GivenResult>,
     rows_only: bool,
     shown: Shown,
 ) -> PyResult<(usize, usize)> {
     let (mut files, mut read) = (Vec::new(), Vec::new());
     for result in results {
         match result {
-            Given::File(file) => files.push(file),
-            Given::Read(result) => read.push(result),
+            GivenResult::Path(file) => files.push(file),
+            GivenResult::Read(result) => read.push(result),
         }
     }
     let added = progress::run(py, &shown, |work| {
@@ -76,7 +67,7 @@ pub fn add_to_store(
     Ok((added.new, added.known))
 }
 
-/// Adds a session without a result to a store, a row with its message; whether it was not there.
+/// Adds a session without a result to a store, a row with its message; the key of the row.
 #[pyfunction]
 pub fn add_failure(
     py: Python,
@@ -86,9 +77,11 @@ pub fn add_failure(
     file: String,
     found: String,
     expected: String,
-) -> PyResult<bool> {
+) -> PyResult<String> {
     let row = Row::failed(session, Failure { message, file, place: String::new(), found, expected });
-    progress::run(py, &None, |_| Ok(Store::create(&store)?.add(vec![row])?.new > 0))
+    let key = row.key.clone();
+    progress::run(py, &None, |_| Store::create(&store)?.add(vec![row]))?;
+    Ok(key)
 }
 
 /// `centrical-history-list/1`.
@@ -96,11 +89,8 @@ pub fn add_failure(
 pub fn history_list(py: Python, store: PathBuf, chosen: Chosen, check: bool) -> PyResult<String> {
     progress::run(py, &None, |work| {
         let (selection, progress) = (selection(Depth::Summary, chosen), |done| work.advance(done));
-        let list = if check {
-            check_store(&store, selection, today(), &progress)?
-        } else {
-            list_store(&store, selection, &progress)?
-        };
+        let list =
+            if check { check_store(&store, selection, &progress)? } else { list_store(&store, selection, &progress)? };
         list.to_json()
     })
 }
@@ -114,15 +104,16 @@ pub fn history_unit(
     limit: Option<Amount>,
     on: Option<String>,
     until: Option<String>,
-    confidence: f64,
+    confidence: Option<f64>,
     trend: bool,
     together: bool,
     out: Option<PathBuf>,
 ) -> PyResult<String> {
+    let confidence = confidence.unwrap_or(UnitHistoryRequest::COVERAGE);
     if !(confidence > 0.5 && confidence < 1.0) {
         return Err(refused("confidence", format!("found {confidence}, expected a number between 0.5 and 1")));
     }
-    let limit = largest_error(limit)?;
+    let limit = Amount::checked(limit, "limit", Quantity::largest_error)?;
     let day = |name: &'static str, day: Option<String>| {
         let refuse = |day: &str| refused(name, format!("found {day:?}, expected a day such as 2026-10-05"));
         day.map(|day| day.parse::<Date>().map_err(|_| refuse(&day))).transpose()
@@ -220,18 +211,9 @@ pub fn history_pages(
     batches: Option<PathBuf>,
     accepted: usize,
 ) -> PyResult<usize> {
-    let limit = largest_error(limit)?;
+    let limit = Amount::checked(limit, "limit", Quantity::largest_error)?;
     let request = PagesRequest { limit, laboratory, batches, accepted };
     progress::run(py, &None, |work| write_history_pages(&store, &out, &request, &|done| work.advance(done)))
-}
-
-/// The largest error of a compensated reading [m/s^2].
-fn largest_error(limit: Option<Amount>) -> PyResult<Option<f64>> {
-    let limit = Amount::optional(limit, "limit", Dimension::Acceleration)?;
-    match limit.filter(|limit| *limit <= 0.0) {
-        Some(wrong) => Err(refused("limit", format!("found {wrong} m/s^2, expected one above zero"))),
-        None => Ok(limit),
-    }
 }
 
 fn selection(depth: Depth, (unit_model, unit_serial, station): Chosen) -> Selection {

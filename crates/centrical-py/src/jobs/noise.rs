@@ -3,12 +3,12 @@
 use std::path::{Path, PathBuf};
 
 use centrical_report::write_noise;
-use centrical_session::{Error, Estimator, Folder, NoiseAnalysis, NoiseRequest, noise_of, noise_of_plateau};
+use centrical_session::{Error, Estimator, Folder, NoiseAnalysis, NoiseRequest, Quantity, noise_of, noise_of_plateau};
 use pyo3::prelude::*;
 
 use crate::given::{GivenFile, GivenSession};
 use crate::progress::{self, Shown};
-use crate::words::{Amount, Named, column, one_of, plateau, sampling_rate};
+use crate::words::{Amount, GivenColumn, column, one_of, plateau};
 
 /// `centrical-noise/1`.
 #[pyfunction]
@@ -17,9 +17,9 @@ pub fn noise(
     source: GivenFile,
     plateau_name: Option<&str>,
     session: Option<PathBuf>,
-    time: Named,
+    time: GivenColumn,
     rate: Option<Amount>,
-    readings: Vec<Named>,
+    readings: Vec<GivenColumn>,
     unit: String,
     window: [f64; 2],
     estimators: Vec<String>,
@@ -33,7 +33,7 @@ pub fn noise(
         plateau: plateau_name.map(|name| plateau("plateau", name)).transpose()?,
         session,
         time: column("time", time)?,
-        rate: sampling_rate(rate)?,
+        rate: Amount::checked(rate, "rate", Quantity::sampling_rate)?,
         readings: readings.into_iter().map(|name| column("readings", name)).collect::<PyResult<_>>()?,
         unit,
         window,

@@ -26,13 +26,10 @@ pub fn plan(
     if svg.is_some() && !frontier {
         return Err(refused("svg", "found a file without frontier=True, expected both or neither"));
     }
-    let levels = levels.unwrap_or_else(|| USUAL_LEVELS.to_vec());
-    if let Some(level) = levels.iter().find(|level| !(0.0..=1e6).contains(*level)) {
-        return Err(refused("levels", format!("found {level}, expected multiples of Omega*^2, zero or more")));
-    }
-    let available = |time: Amount| available_time(&time.quantity()).map_err(|wrong| refused("time", wrong));
+    let levels = levels.unwrap_or_else(|| USUAL_LEVELS.to_vec()).into_iter().map(PlanRequest::level);
+    let levels = levels.collect::<Result<_, _>>().map_err(|wrong| refused("levels", wrong))?;
     let request = PlanRequest {
-        time: time.map(available).transpose()?,
+        time: Amount::checked(time, "time", available_time)?,
         certify,
         frontier: if frontier { USUAL_TIMES.to_vec() } else { Vec::new() },
         levels,

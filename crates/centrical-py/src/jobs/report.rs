@@ -1,9 +1,9 @@
 //! `report`: the documents that a laboratory hands over, from a result.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use centrical_report::{DocumentRequest, UnitStatement, write_documents};
-use centrical_session::{Axes, Dimension, DocumentKind, DocumentsReport};
+use centrical_session::{Axes, Dimension, DocumentsReport};
 use pyo3::prelude::*;
 
 use crate::progress;
@@ -36,17 +36,6 @@ pub fn report(
         let documents = write_documents(&request)?;
         let name = name.as_deref().unwrap_or(&request.result);
         let within = documents.unit.as_ref().map(UnitStatement::is_within);
-        DocumentsReport::of(name, &documents.result, &written(&request), within).to_json()
+        DocumentsReport::of(name, &documents.result, &request.written(), within).to_json()
     })
-}
-
-/// The documents that were asked for.
-fn written(request: &DocumentRequest) -> Vec<(DocumentKind, &Path)> {
-    let documents = [
-        (DocumentKind::Report, &request.html),
-        (DocumentKind::Certificate, &request.pdf),
-        (DocumentKind::DigitalCertificate, &request.dcc),
-        (DocumentKind::Code, &request.code),
-    ];
-    documents.into_iter().filter_map(|(kind, path)| Some((kind, path.as_deref()?))).collect()
 }

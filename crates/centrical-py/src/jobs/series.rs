@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use centrical_session::{SeriesRequest, calibrate_series, expanded};
+use centrical_session::{SeriesRequest, calibrate_series, matching_paths};
 use pyo3::prelude::*;
 
 use crate::progress::{self, Shown};
@@ -25,7 +25,7 @@ pub fn series(
     }
     let request = SeriesRequest { out, method: words::method(method)?, jobs, rows_only, reduced };
     progress::run(py, &shown, |work| {
-        let sessions = expanded(&sessions)?;
+        let sessions = matching_paths(&sessions)?;
         work.expect(sessions.len() as u64);
         calibrate_series(&sessions, &request, &|count| work.count(count))?.to_json()
     })

@@ -4,16 +4,15 @@ use std::path::{Path, PathBuf};
 
 use centrical_report::{Language, write_all_documents};
 use centrical_session::{
-    Dimension, Error, Folder, MOST_DISTANT, Quantity, STANDARD_GRAVITY, StatedAttitudes, TumbleRequest, claim_folder,
-    refuse_inputs,
+    Dimension, Error, Folder, Quantity, STANDARD_GRAVITY, StatedAttitudes, TumbleRequest, claim_folder,
 };
 use nalgebra::Vector3;
 use pyo3::prelude::*;
 
-use crate::given::GivenFile;
+use crate::given::{GivenFile, refuse_outputs};
 use crate::progress::{self, Shown};
 use crate::result::CalibrationResult;
-use crate::words::{Amount, Named, column, refused, sampling_rate};
+use crate::words::{Amount, GivenColumn, column, refused};
 
 /// Attitudes in which the unit was laid down.
 #[derive(FromPyObject)]
@@ -30,9 +29,9 @@ pub enum Attitudes {
 pub fn tumble(
     py: Python,
     records: Vec<GivenFile>,
-    time: Named,
+    time: GivenColumn,
     rate: Option<Amount>,
-    readings: [Named; 3],
+    readings: [GivenColumn; 3],
     unit: String,
     gravity: [Option<Amount>; 2],
     attitudes: Option<(Attitudes, Option<Amount>)>,
@@ -45,8 +44,9 @@ pub fn tumble(
     shown: Shown,
 ) -> PyResult<CalibrationResult> {
     let [first, second, third] = readings;
-    let [gravity, uncertainty] = gravity.map(|amount| Amount::optional(amount, "gravity", Dimension::Acceleration));
-    let (gravity, uncertainty) = (on_earth(gravity?)?, uncertainty?);
+    let [gravity, uncertainty] = gravity;
+    let gravity = Amount::checked(gravity, "gravity", Quantity::gravity)?;
+    let uncertainty = Amount::optional(uncertainty, "gravity", Dimension::Acceleration)?;
     let anywhere = if gravity.is_some() { 0.0 } else { TumbleRequest::GRAVITY_ANYWHERE };
     let (mut files, mut folder) = (Vec::new(), Folder::default());
     for record in records {
@@ -58,13 +58,13 @@ pub fn tumble(
         files,
         folder,
         time: column("time", time)?,
-        rate: sampling_rate(rate)?,
+        rate: Amount::checked(rate, "rate", Quantity::sampling_rate)?,
         readings: [column("readings", first)?, column("readings", second)?, column("readings", third)?],
         unit: TumbleRequest::unit(&unit).map_err(|wrong| refused("unit", wrong))?,
         gravity: gravity.unwrap_or(STANDARD_GRAVITY),
         gravity_uncertainty: uncertainty.unwrap_or(anywhere),
         attitudes: None,
-        turning_radius: distance(turning_radius)?,
+        turning_radius: Amount::checked(turning_radius, "turning_radius", TumbleRequest::turning_radius)?,
         terms: terms.unwrap_or_else(|| TumbleRequest::USUAL_TERMS.map(str::to_owned).to_vec()),
         model,
         serial,
@@ -75,8 +75,9 @@ pub fn tumble(
         request.attitudes = attitudes.map(|(attitudes, uncertainty)| stated(attitudes, uncertainty)).transpose()?;
         let folder = out.as_deref().unwrap_or(Path::new(""));
         let claim = out.as_deref().map(claim_folder).transpose()?;
-        let read: Vec<&Path> = request.inputs().collect();
-        refuse_inputs(&["result.json", "report.html"].map(|name| folder.join(name)), &read)?;
+        if out.is_some() {
+            refuse_outputs(folder, &request.inputs().collect::<Vec<_>>())?;
+        }
         let tumble = centrical_session::tumble(&request, folder, &|bytes| work.advance(bytes))?;
         if out.is_some() {
             tumble.write(&request, folder)?;
@@ -86,24 +87,6 @@ pub fn tumble(
         Ok(tumble.result)
     })?;
     Ok(result.into())
-}
-
-/// Gravity at a place on Earth [m/s^2].
-fn on_earth(gravity: Option<f64>) -> PyResult<Option<f64>> {
-    let checked = gravity.map(|gravity| Quantity::Number(gravity).gravity()).transpose();
-    checked.map_err(|not| refused("gravity", not.to_string()))
-}
-
-/// A distance from an axis of rotation [m].
-fn distance(turning_radius: Option<Amount>) -> PyResult<Option<f64>> {
-    let distance = Amount::optional(turning_radius, "turning_radius", Dimension::Length)?;
-    match distance.filter(|distance| !(0.0..=MOST_DISTANT).contains(distance)) {
-        Some(wrong) => {
-            let message = format!("found {wrong} m, expected a distance of 0 to {MOST_DISTANT} m");
-            Err(refused("turning_radius", message))
-        }
-        None => Ok(distance),
-    }
 }
 
 /// Rows that are not directions, and a missing uncertainty, are errors of the call.

@@ -12,8 +12,8 @@ const ALIKE: usize = 5;
 /// Patterns that a sentence names: one cause makes many.
 const PATTERNS: usize = 3;
 
-/// An objection to a result.
-pub(crate) fn objection(objection: &ResultObjection, language: Language) -> String {
+/// An objection to a result as a sentence.
+pub fn objection(objection: &ResultObjection, language: Language) -> String {
     let messages = language.messages();
     match objection {
         Objection::NotConverged { termination, iterations } => {

@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use centrical::MeasurementModel;
 use centrical_session::{
-    Axes, CalibrationResult, Date, Error, HistoryEntry, Laboratory, Limitable, NoiseAnalysis, Place, UnknownUnit,
-    claim_folder, create_folder, history_up_to, read_history, refuse_inputs, write_whole,
+    Axes, CalibrationResult, Date, DocumentKind, Error, HistoryEntry, Laboratory, Limitable, NoiseAnalysis, Place,
+    UnknownUnit, claim_folder, create_folder, history_up_to, read_history, refuse_inputs, write_whole,
 };
 
 use crate::codegen::{NamedTerm, compensation_source, heading};
@@ -44,6 +44,19 @@ pub struct DocumentRequest {
     pub axes: Option<Axes>,
     /// Language of the documents.
     pub language: Language,
+}
+
+impl DocumentRequest {
+    /// The documents that are asked for, and their files.
+    pub fn written(&self) -> Vec<(DocumentKind, &Path)> {
+        let documents = [
+            (DocumentKind::Report, &self.html),
+            (DocumentKind::Certificate, &self.pdf),
+            (DocumentKind::DigitalCertificate, &self.dcc),
+            (DocumentKind::Code, &self.code),
+        ];
+        documents.into_iter().filter_map(|(kind, path)| Some((kind, path.as_deref()?))).collect()
+    }
 }
 
 /// The result that documents were made of, and what they say of the unit.
@@ -115,6 +128,15 @@ pub fn write_documents(request: &DocumentRequest) -> Result<Documents, Error> {
     Ok(Documents { unit: issuer.and_then(|issuer| issuer.unit), other_days, result })
 }
 
+/// The files of [`write_all_documents`], but for plots.
+pub fn document_files(folder: &Path) -> Vec<PathBuf> {
+    [REPORT, CERTIFICATE, DIGITAL_CERTIFICATE].map(|name| folder.join(name)).to_vec()
+}
+
+const REPORT: &str = "report.html";
+const CERTIFICATE: &str = "certificate.pdf";
+const DIGITAL_CERTIFICATE: &str = "certificate.xml";
+
 /// Writes the report and its plots to a folder, and the certificates if the data of the laboratory are given.
 ///
 /// # Errors
@@ -127,12 +149,12 @@ pub fn write_all_documents(
 ) -> Result<(), Error> {
     let unit = issuer.and_then(|issuer| issuer.unit.as_ref());
     let drawn = figures(result, language);
-    write_whole(&folder.join("report.html"), html(&report(result, unit, None, drawn.clone(), language)).as_bytes())?;
+    write_whole(&folder.join(REPORT), html(&report(result, unit, None, drawn.clone(), language)).as_bytes())?;
     if let Some(issuer) = issuer {
         let dcc = dcc(result, issuer, language, &folder.join("result.json"))?;
         let certificate = with_attachment(certificate(result, None, issuer, language), Some(&dcc));
-        write_whole(&folder.join("certificate.pdf"), &pdf(&certificate))?;
-        write_whole(&folder.join("certificate.xml"), dcc.as_bytes())?;
+        write_whole(&folder.join(CERTIFICATE), &pdf(&certificate))?;
+        write_whole(&folder.join(DIGITAL_CERTIFICATE), dcc.as_bytes())?;
     }
     let plots = folder.join("plots");
     create_folder(&plots)?;
@@ -203,7 +225,7 @@ pub fn read_issuer(file: &Path, result: &CalibrationResult) -> Result<Issuer, Er
 /// A certificate that carries its digital form.
 fn with_attachment(certificate: Document, dcc: Option<&str>) -> Document {
     let attachment = dcc.map(|text| Attachment {
-        name: "certificate.xml",
+        name: DIGITAL_CERTIFICATE,
         media_type: "application/xml",
         bytes: text.as_bytes().to_vec(),
     });

@@ -16,6 +16,17 @@ pub enum AlarmKind {
     Failed,
 }
 
+impl AlarmKind {
+    /// Its name for programs.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Plateau => "plateau",
+            Self::Frozen => "frozen",
+            Self::Failed => "failed",
+        }
+    }
+}
+
 /// The alarm of an event and what was found, if the event is one.
 pub fn alarm_text(event: &WatchEvent) -> Option<(AlarmKind, String)> {
     match event {

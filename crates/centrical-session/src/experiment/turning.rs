@@ -90,7 +90,7 @@ impl Turning {
 }
 
 /// Largest distance from an axis of rotation [m]: beyond it a unit was mistaken.
-pub const MOST_DISTANT: f64 = 10.0;
+pub(crate) const MOST_DISTANT: f64 = 10.0;
 
 /// What a distance from an axis of rotation is expected to be.
 pub(super) const DISTANCE: &str = "a distance of 0 to 10 m";

@@ -22,7 +22,7 @@ pub use self::add::{add_result, add_results, refuse_date};
 pub use self::batches::read_batches;
 pub use self::calibrated::{Calibrated, CalibratedParameter, Kinds, shared_changes};
 pub use self::chart::{ChartLimits, ChartRequest, RuleSet, chart, chart_of_one};
-pub use self::check::{check_store, spelling, today};
+pub use self::check::{check_store, spelling};
 pub use self::comparable::ComparedUnits;
 pub use self::earlier::history_up_to;
 pub use self::limits::{ParameterLimits, read_limits};

@@ -33,9 +33,10 @@ use crate::error::{Error, Place};
 /// Drafts an experiment file. `progress` is asked while records are read, with none done.
 ///
 /// # Errors
-/// [`Error`] when a file cannot be read, when none is a record, or when the tumble is of another unit of readings;
+/// [`Error`] when a file cannot be read, when none is a record, when the experiment file is there, or when the tumble is of another unit of readings;
 /// [`Error::Stopped`].
 pub fn init(request: &InitRequest, progress: OnProgress) -> Result<Draft, Error> {
+    request.refuse_existing()?;
     let (groups, unused) = file_roles::groups(&request.inputs)?;
     if groups.is_empty() {
         let inputs = request.inputs.first().map_or(Path::new("."), PathBuf::as_path);

@@ -8,7 +8,7 @@ use crate::error::{Error, Place};
 ///
 /// # Errors
 /// [`Error`] if nothing matches, or what matches cannot be listed.
-pub fn expanded(given: &[PathBuf]) -> Result<Vec<PathBuf>, Error> {
+pub fn matching_paths(given: &[PathBuf]) -> Result<Vec<PathBuf>, Error> {
     let mut paths = Vec::with_capacity(given.len());
     for path in given {
         match pattern(path) {

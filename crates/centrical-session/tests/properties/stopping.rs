@@ -105,7 +105,7 @@ fn noise_of_a_record() {
 fn a_draft() {
     let request = InitRequest {
         inputs: ["records", "telemetry"].map(|name| example().join("ta-200").join(name)).to_vec(),
-        folder: example(),
+        out: None,
         tumble: None,
         six_positions: false,
     };

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use centrical_session::{AddedReport, Error, add_results, expanded};
+use centrical_session::{AddedReport, Error, add_results, matching_paths};
 
 use crate::outcome::Outcome;
 use crate::output::print;
@@ -31,8 +31,12 @@ pub struct Arguments {
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let bar = progress::results(arguments.quiet);
-    let added =
-        add_results(&arguments.store, &expanded(&arguments.results)?, arguments.rows_only, &progress::counting(&bar))?;
+    let added = add_results(
+        &arguments.store,
+        &matching_paths(&arguments.results)?,
+        arguments.rows_only,
+        &progress::counting(&bar),
+    )?;
     bar.finish_and_clear();
     match (arguments.json, arguments.quiet) {
         (true, _) => print(&AddedReport::of(added.new, added.known).to_json()?)?,

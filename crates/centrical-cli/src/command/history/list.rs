@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use centrical_report::history_list_text;
-use centrical_session::{Error, Place, Selection, check_store, list_store, today, unwatched};
+use centrical_session::{Error, Place, Selection, check_store, list_store, unwatched};
 
 use crate::outcome::Outcome;
 use crate::printing::Printing;
@@ -40,7 +40,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     };
     let names_any = selection.names_any();
     let list = if arguments.check {
-        check_store(&arguments.store, selection, today(), &unwatched)?
+        check_store(&arguments.store, selection, &unwatched)?
     } else {
         list_store(&arguments.store, selection, &unwatched)?
     };

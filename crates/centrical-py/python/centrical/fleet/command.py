@@ -13,6 +13,7 @@ import obstore
 
 from .engines import EngineError
 from .isolation import WorkerTrouble
+from .places import first_line
 from .run import calibrate
 from .settings import EnvironmentMismatch, Settings
 from .summary import summary
@@ -30,9 +31,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         print("centrical-fleet: interrupted; the same command goes on", file=sys.stderr)
         return 130
     except EXPECTED as error:
-        # Behind its first line obstore shows the store's answer and its own insides.
-        first = str(error).split("\n")[0].split(": <?xml")[0]
-        print(f"centrical-fleet: {first}", file=sys.stderr)
+        print(f"centrical-fleet: {first_line(error)}", file=sys.stderr)
         return 2
 
 

@@ -141,3 +141,8 @@ def read_manifest(file: Path) -> tuple[str, list[Session]]:
             wanted = '{"place": URL}' if number == 1 else '{"name": NAME, "files": [[PATH, SIZE, STAMP], ...]}'
             raise ValueError(f"{file}, line {number}: found {line[:60]!r}, expected {wanted}") from error
     return place, sorted(sessions, key=lambda session: session.name)
+
+
+def first_line(error: BaseException) -> str:
+    """The first line of an error: behind it obstore shows the store's answer and its own insides."""
+    return str(error).split("\n")[0].split(": <?xml")[0]

@@ -17,7 +17,7 @@ import obstore
 
 from .engines import engine_of
 from .parts import Part, parts_of
-from .places import Place, Session, get, list_sessions, names, read_manifest
+from .places import Place, Session, first_line, get, list_sessions, names, read_manifest
 from .settings import EnvironmentMismatch, Settings, expected
 from .work import Task, make
 
@@ -122,8 +122,7 @@ def _run(tasks: list[Task], engine: Any, progress: bool) -> list[str]:
             if isinstance(outcome, FATAL):
                 raise outcome
             if isinstance(outcome, BaseException):
-                first = str(outcome).split("\n")[0].split(": <?xml")[0]
-                messages.append(f"part {tasks[number].part.name}: {type(outcome).__name__}: {first}")
+                messages.append(f"part {tasks[number].part.name}: {type(outcome).__name__}: {first_line(outcome)}")
             bar.add(tasks[number].part.work)
     finally:
         bar.end()

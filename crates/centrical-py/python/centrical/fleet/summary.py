@@ -16,6 +16,7 @@ import pyarrow.parquet as pq
 from .. import _history
 from .._errors import InputError
 from .places import Place, get, names
+from .tables import counts_of
 
 SHOWN = 20
 """Failures and units that are named."""
@@ -71,13 +72,11 @@ def summary(results: str | Path, options: Mapping[str, str] | None = None) -> Su
     sessions = pa.concat_tables(
         [pq.read_table(pa.BufferReader(get(store, f"sessions/{part}.parquet"))) for part in parts]
     )
-    status, acceptable = sessions["status"].to_pylist(), sessions["acceptable"].to_pylist()
-    done = [accepted for state, accepted in zip(status, acceptable) if state == "done"]
-    counts = {"acceptable": sum(done), "not acceptable": len(done) - sum(done), "failed": len(status) - len(done)}
+    counts = {name.replace("_", " "): count for name, count in counts_of(sessions).items()}
     objections = Counter(name for listed in sessions["objections"].to_pylist() for name in listed or [])
     messages = sorted(message for message in sessions["message"].to_pylist() if message)
     seconds = float(sum(sessions["seconds"].to_pylist()))
-    return Summary(len(status), counts, dict(objections), messages[:SHOWN], _units(place, parts, store), seconds)
+    return Summary(counts.pop("sessions"), counts, dict(objections), messages[:SHOWN], _units(place, parts, store), seconds)
 
 
 def _units(place: Place, parts: list[str], store: Any) -> Any:

@@ -88,6 +88,14 @@ def parameters_of(rows: pa.Table, outcomes: list[Outcome]) -> pa.Table:
     return pa.table({name: pa.array(values, kind) for (name, values), kind in zip(columns.items(), types)})
 
 
+def counts_of(sessions: pa.Table) -> dict[str, int]:
+    """How many sessions there are, and how many of them are acceptable, not acceptable or failed."""
+    status, acceptable = sessions["status"].to_pylist(), sessions["acceptable"].to_pylist()
+    done = [accepted for state, accepted in zip(status, acceptable) if state == "done"]
+    failed = len(status) - len(done)
+    return {"sessions": len(status), "acceptable": sum(done), "not_acceptable": len(done) - sum(done), "failed": failed}
+
+
 _LISTS = ["parameters", "values", "standard_uncertainties", "units"]
 
 

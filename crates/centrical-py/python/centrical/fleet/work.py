@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 import os
 import tempfile
@@ -20,7 +19,7 @@ from .isolation import Child, Crashed
 from .parts import Part
 from .places import Place, Session, get, put_new
 from .settings import Settings, check
-from .tables import Outcome, parameters_of, parquet, rows_of, sessions_of
+from .tables import Outcome, counts_of, parameters_of, parquet, rows_of, sessions_of
 
 MARKER = "centrical-part/1"
 
@@ -87,8 +86,7 @@ def _key(store: Path, session: str) -> str:
 def _failed(store: Path, session: str, file: str, found: str, expected: str) -> str:
     where = f"{session}/{file}" if file else session
     message = f"{where}: found {found}, expected {expected}"
-    _native.add_failure(store, session, message, where, found, expected)
-    return hashlib.sha256(f"{session}\n{message}".encode()).hexdigest()
+    return _native.add_failure(store, session, message, where, found, expected)
 
 
 def _write(task: Task, out: Any, stores: Path, outcomes: list[Outcome]) -> dict[str, Any]:
@@ -107,7 +105,7 @@ def _write(task: Task, out: Any, stores: Path, outcomes: list[Outcome]) -> dict[
         "program": task.environment["version"],
         "settings": task.settings.of_result(),
         "sessions": [outcome.session for outcome in outcomes],
-        "counts": _counts(sessions),
+        "counts": counts_of(sessions),
         "bytes": sum(outcome.bytes for outcome in outcomes),
         "seconds": sum(outcome.seconds for outcome in outcomes),
     }
@@ -124,10 +122,3 @@ def _upload(out: Any, stores: Path, folder: str) -> None:
         for file in sorted((store / folder).rglob("*")):
             if file.is_file():
                 obstore.put(out, file.relative_to(store).as_posix(), file)
-
-
-def _counts(sessions: Any) -> dict[str, int]:
-    status, acceptable = sessions["status"].to_pylist(), sessions["acceptable"].to_pylist()
-    done = [accepted for state, accepted in zip(status, acceptable) if state == "done"]
-    failed = len(status) - len(done)
-    return {"sessions": len(status), "acceptable": sum(done), "not_acceptable": len(done) - sum(done), "failed": failed}

@@ -15,23 +15,17 @@ use crate::record::Input;
 use crate::settings::read_result;
 use crate::store::{Depth, Row, Selection, Status, Store, sha256};
 
-/// Days from 1970-01-01; a day more, since a station may be east of here.
-pub fn today() -> i64 {
+/// Tomorrow in days from 1970-01-01: a station may be east of here.
+fn tomorrow() -> i64 {
     let passed = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).unwrap_or_default();
     i64::try_from(passed.as_secs() / 86_400 + 1).unwrap_or(i64::MAX)
 }
 
-/// The calibrations that a selection picks, by unit and day, with the doubts about them. `today` in days from 1970-01-01; `progress` is
-/// asked again and again.
+/// The calibrations that a selection picks, by unit and day, with the doubts about them. `progress` is asked again and again.
 ///
 /// # Errors
 /// [`Error`] if the folder is not a store, a part is damaged, or a copy cannot be read. [`Error::Stopped`].
-pub fn check_store(
-    folder: &Path,
-    selection: Selection,
-    today: i64,
-    progress: OnProgress,
-) -> Result<HistoryList, Error> {
+pub fn check_store(folder: &Path, selection: Selection, progress: OnProgress) -> Result<HistoryList, Error> {
     let store = Store::open(folder)?;
     // Numbers are held against copies alone.
     let depth = if store.keeps_results() { Depth::Whole } else { selection.depth };
@@ -41,7 +35,8 @@ pub fn check_store(
     let mut doubts = two_spellings(&done);
     let Copies { doubts: of_copies, measured } = Copies::read(&store, &done, progress)?;
     doubts.extend(twice(&done, &measured));
-    doubts.extend(done.iter().filter_map(|row| day(row, today)));
+    let latest = tomorrow();
+    doubts.extend(done.iter().filter_map(|row| day(row, latest)));
     doubts.extend(of_copies);
     let mut list = HistoryList::new(&folder.display().to_string(), without_superseded(folder, rows)?);
     list.doubts = Some(doubts);
@@ -121,10 +116,10 @@ fn keys(rows: &[&Row]) -> Vec<String> {
 /// First day of 1980, in days from 1970-01-01: no record that programs read is older.
 const EARLIEST: i64 = 3652;
 
-fn day(row: &Row, today: i64) -> Option<Doubt> {
+fn day(row: &Row, latest: i64) -> Option<Doubt> {
     let kind = match row.day {
         None => DoubtKind::NoDay,
-        Some(day) if day > today => DoubtKind::Ahead,
+        Some(day) if day > latest => DoubtKind::Ahead,
         Some(day) if day < EARLIEST => DoubtKind::LongAgo,
         Some(_) => return None,
     };

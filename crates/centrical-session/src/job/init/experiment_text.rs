@@ -37,7 +37,7 @@ pub(super) fn draft(
     let mut draft = Draft::default();
     heading(&mut draft, mountings);
     for Unused { path, reason } in unused {
-        draft.unused(&format!("{}: {reason}", relative(path, &request.folder)));
+        draft.unused(&format!("{}: {reason}", relative(path, request.folder())));
     }
     draft.line("");
     session(&mut draft, tumbled);
@@ -60,14 +60,14 @@ pub(super) fn draft(
             }
         }
         arm(&mut draft, m, findings.radii[m]);
-        files(&mut draft, mounting, &request.folder);
+        files(&mut draft, mounting, request.folder());
         if !is_common {
             plateaus(&mut draft, mounting, &findings.schedules[m], &format!("[[mounting]] {}", m + 1));
         }
         draft.line("");
     }
     if let Some(tumbled) = tumbled {
-        tumbled.rests(&mut draft, &request.folder);
+        tumbled.rests(&mut draft, request.folder());
     }
     draft.text.truncate(draft.text.trim_end().len());
     draft.text.push('\n');

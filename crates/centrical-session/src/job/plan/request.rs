@@ -24,3 +24,14 @@ pub struct PlanRequest {
     /// Files that will be written: none of them may be one that is read.
     pub outputs: Vec<PathBuf>,
 }
+
+impl PlanRequest {
+    /// A level `m` of [K5.5].
+    ///
+    /// # Errors
+    /// What was found and expected.
+    pub fn level(level: f64) -> Result<f64, String> {
+        let is_level = (0.0..=1e6).contains(&level);
+        is_level.then_some(level).ok_or_else(|| format!("found {level}, expected a multiple of Omega*^2, zero or more"))
+    }
+}

@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use centrical_table::{ColumnName, unit_of_word};
 
-use crate::experiment::{Folder, RAW_OUTPUT, StatedAttitudes};
-use crate::quantity::Dimension;
+use crate::experiment::{Folder, MOST_DISTANT, RAW_OUTPUT, StatedAttitudes};
+use crate::quantity::{Dimension, NotThatQuantity, Quantity};
 
 /// Records of a unit that rested in attitudes that only gravity shows, and what is to be made of them.
 #[derive(Debug, Clone, PartialEq)]
@@ -58,6 +58,14 @@ impl TumbleRequest {
         Err(format!(
             "found {text:?}, expected a unit of acceleration such as \"m/s^2\" or \"g\", or \"counts\" or \"V\""
         ))
+    }
+
+    /// The largest distance of the proof masses from an axis of rotation [m].
+    ///
+    /// # Errors
+    /// [`NotThatQuantity`] if it is negative or beyond [`MOST_DISTANT`].
+    pub fn turning_radius(distance: &Quantity) -> Result<f64, NotThatQuantity> {
+        distance.within(Dimension::Length, 0.0..=MOST_DISTANT, &format!("a distance of 0 to {MOST_DISTANT} m"))
     }
 
     /// All files that are read: the records, and that of the attitudes.

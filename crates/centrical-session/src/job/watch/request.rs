@@ -36,6 +36,19 @@ pub struct WatchRequest {
     pub live: Option<LiveRequest>,
 }
 
+impl WatchRequest {
+    /// A time in seconds, up to a day.
+    ///
+    /// # Errors
+    /// What was found and expected.
+    pub fn time(seconds: f64) -> Result<Duration, String> {
+        let is_time = (0.0..=86400.0).contains(&seconds);
+        is_time
+            .then(|| Duration::from_secs_f64(seconds))
+            .ok_or_else(|| format!("found {seconds}, expected seconds from 0 to 86400"))
+    }
+}
+
 /// What happens while a session is watched.
 #[derive(Debug)]
 pub enum WatchEvent<'a> {
