@@ -140,6 +140,17 @@ fn a_result_agrees_with_itself() {
     refused(&|r| r["covariance"][2][0] = 1e-3.into(), "as on the other side of the diagonal");
     let correlated = |r: &mut Value| [(2, 0), (0, 2)].iter().for_each(|&(i, j)| r["covariance"][i][j] = 1e-3.into());
     refused(&correlated, "at most, the product of their standard uncertainties");
+    let both = |r: &mut Value| {
+        halved(&mut r["parameters"][3]["standard_uncertainty"]);
+        let row = r["covariance"][3].as_array().unwrap().len();
+        (0..row).for_each(|k| {
+            halved(&mut r["covariance"][3][k]);
+            halved(&mut r["covariance"][k][3]);
+        });
+    };
+    refused(&both, "its standard uncertainty");
+    refused(&|r| halved(&mut r["budget"]["sources"][0]["standard_uncertainty"][3]), "the squares of its sources");
+    refused(&|r| drop(r["budget"]["combined"].as_array_mut().unwrap().pop()), "the number of parameters");
     refused(&|r| r["parameters"][3]["value"] = Value::Null, "both or neither");
     refused(&|r| r["parameters"][3]["name"] = "df_1".into(), "each once");
     refused(&|r| drop(r["covariance"].as_array_mut().unwrap().pop()), "the number of parameters");

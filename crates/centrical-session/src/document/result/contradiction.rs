@@ -5,12 +5,15 @@ use std::collections::HashSet;
 use centrical::{ErrorModel, Term};
 use centrical_table::LARGEST_NUMBER;
 
-use super::schema::{CalibrationResult, ConvergenceSummary, ObservabilitySummary, ParameterEstimate};
+use super::schema::{CalibrationResult, ConvergenceSummary, Method, ObservabilitySummary, ParameterEstimate};
 use crate::experiment::RAW_OUTPUT;
 use crate::quantity::{Dimension, Quantity};
 
 /// Relative difference of a variance from the square of a standard uncertainty that may be computed in another way: rounding makes some 1e-9 of it.
 const ROUNDING: f64 = 1e-6;
+
+/// Relative difference of uncertainties that are computed in two ways, where sums over plateaus round.
+const BUDGET_ROUNDING: f64 = 1e-3;
 
 /// What was found, and what was expected.
 type Contradiction = (String, String);
@@ -27,6 +30,7 @@ pub(super) fn contradiction(result: &CalibrationResult) -> Option<Contradiction>
         .or_else(|| of_plateaus(result))
         .or_else(|| of_records(result))
         .or_else(|| of_covariance(result))
+        .or_else(|| of_budget(result))
         .or_else(|| of_checks(result))
 }
 
@@ -224,6 +228,29 @@ fn of_covariance(result: &CalibrationResult) -> Option<Contradiction> {
     };
     let mut pairs = (0..n).flat_map(|i| (0..=i).map(move |j| (i, j)));
     pairs.find_map(|(i, j)| of_pair(i, j))
+}
+
+/// The budget has a number for each parameter, its sources make up the combined uncertainty, and that is the one of the estimate. The linear fit
+/// has an estimate of its own.
+fn of_budget(result: &CalibrationResult) -> Option<Contradiction> {
+    let (budget, n) = (result.budget.as_ref()?, result.parameters.len());
+    let sources = || budget.sources.iter().map(|source| &source.standard_uncertainty);
+    if let Some(row) = sources().chain([&budget.combined]).find(|row| row.len() != n) {
+        return Some((format!("a budget of {} numbers", row.len()), format!("{n}, the number of parameters")));
+    }
+    result.parameters.iter().zip(&budget.combined).enumerate().find_map(|(j, (parameter, combined))| {
+        let (stated, combined) = (parameter.standard_uncertainty?, (*combined)?);
+        let summed = sources().filter_map(|row| row[j]).map(|u| u * u).sum::<f64>().sqrt();
+        let differs = |expected: f64| (combined - expected).abs() > BUDGET_ROUNDING * expected;
+        let found = || format!("combined uncertainty of {} {combined:e} in the budget", parameter.name);
+        if differs(summed) {
+            Some((found(), format!("{summed:e}, the root of the sum of the squares of its sources")))
+        } else if result.fit.method != Method::Linear && differs(stated) {
+            Some((found(), format!("{stated:e}, its standard uncertainty")))
+        } else {
+            None
+        }
+    })
 }
 
 fn variance(parameter: &ParameterEstimate, found: f64) -> String {
