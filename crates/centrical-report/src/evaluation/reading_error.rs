@@ -23,7 +23,7 @@ pub(crate) struct ReadingError {
     pub prediction: Vector3<f64>,
 }
 
-/// Errors on every plateau; `None` if a coefficient of the error model is not determined.
+/// Errors on every plateau; `None` if a coefficient of the error model is not determined, or a covariance is not positive definite.
 pub(crate) fn reading_errors(result: &CalibrationResult) -> Option<Vec<ReadingError>> {
     let compensated = compensated(result)?;
     let of_rests: HashSet<usize> = result.rests().map(|rest| rest.mounting).collect();
@@ -39,7 +39,7 @@ fn reading_error(plateau: &PlateauSummary, is_rest: bool, compensated: &Compensa
     // Across the force a rest shows its attitude, by which it trembles and differs from what is stated.
     let along = force.normalize();
     let seen = if is_rest { along * along.transpose() } else { Matrix3::identity() };
-    let of_speed = if is_rest { Vector3::zeros() } else { of_speed(plateau, &residual) };
+    let of_speed = if is_rest { Vector3::zeros() } else { of_speed(plateau, &residual)? };
     let noise = seen * to_force * matrix(&plateau.covariance) * to_force.transpose() * seen;
     Some(ReadingError {
         force,
@@ -54,11 +54,11 @@ fn reading_error(plateau: &PlateauSummary, is_rest: bool, compensated: &Compensa
 /// The part of a residual that the plateau's speed error explains: its conditional mean given the residual.
 ///
 /// The weight of the fit is `C + s s^T`, `s` being the effect of one standard deviation of the speed; the estimate is
-/// `s s^T (C + s s^T)^-1 r`.
-fn of_speed(plateau: &PlateauSummary, residual: &Vector3<f64>) -> Vector3<f64> {
+/// `s s^T (C + s s^T)^-1 r`. `None` if that weight is not positive definite.
+fn of_speed(plateau: &PlateauSummary, residual: &Vector3<f64>) -> Option<Vector3<f64>> {
     let total = matrix(&plateau.fit_covariance);
     let speed = total - matrix(&plateau.covariance);
-    total.cholesky().map_or_else(Vector3::zeros, |factor| speed * factor.solve(residual))
+    Some(speed * total.cholesky()?.solve(residual))
 }
 
 /// The compensation of the unit; `None` if a coefficient is not determined.
