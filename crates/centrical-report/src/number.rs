@@ -5,6 +5,11 @@ use std::ops::Range;
 /// Seconds in a minute.
 pub(crate) const MINUTE: f64 = 60.0;
 
+/// A number in another unit, to ten significant digits: the digits beyond them are those of the conversion.
+pub(crate) fn converted(value: f64) -> f64 {
+    format!("{value:.9e}").parse().unwrap_or(value)
+}
+
 /// Digits and power of ten of a number rounded to `digits` significant digits: 0.0996 to two is `1.0`, -1.
 pub(crate) fn scientific(value: f64, digits: usize) -> (String, i32) {
     parts(format!("{value:.*e}", digits.saturating_sub(1)))
@@ -118,7 +123,7 @@ pub(crate) fn superscript(number: i32) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{counted, grouped, significant, two_digits, with_uncertainty};
+    use super::{converted, counted, grouped, significant, two_digits, with_uncertainty};
 
     #[test]
     fn two_digits_of_the_uncertainty() {
@@ -143,6 +148,12 @@ mod tests {
         let shown = ["0.0020", "0.10", "10", "26", "12000", "-40", "0", "3.2e-9", "1.6e7"];
         assert_eq!(numbers.map(two_digits), shown);
         assert_eq!([f64::NAN, f64::INFINITY].map(two_digits), ["NaN", "inf"]);
+    }
+
+    #[test]
+    fn a_conversion_adds_no_digits() {
+        assert_eq!([1e6 * 2e-7, 3e-3 * 9.80665 / 9.80665e-6].map(converted), [0.2, 3000.0]);
+        assert_eq!(converted(1e6 * 1.234_567_8e-5), 12.345_678);
     }
 
     #[test]

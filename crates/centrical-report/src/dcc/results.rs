@@ -15,6 +15,7 @@ use crate::evaluation::{
     COVERAGE_PROBABILITY, Expanded, ReadingError, equation, expanded, expanded_of_normal, reading_errors,
 };
 use crate::language::Language;
+use crate::number::converted;
 
 /// The results, the parameters with their `units`.
 pub(super) fn list(
@@ -100,9 +101,7 @@ fn influences(xml: &mut Xml, result: &CalibrationResult, laboratory: &Laboratory
             influence(xml, (kind, name), language, |xml| {
                 for (end, bound) in [("Min", value - range), ("Max", value + range)] {
                     xml.element_with("dcc:quantity", &[("refType", &format!("{kind}{end}"))], |xml| {
-                        // To the laboratory's own digits: no conversion knows more.
-                        let si = format!("{:.9e}", bound * factor + offset).parse().unwrap_or(f64::NAN);
-                        real(xml, si, unit, None);
+                        real(xml, converted(bound * factor + offset), unit, None);
                     });
                 }
             });

@@ -5,6 +5,7 @@ use centrical_session::{DecisionRule, LimitEnd, Limited};
 use super::content::{Align, Table};
 use crate::evaluation::{Judged, UnitStatement, symbol};
 use crate::language::Language;
+use crate::number::converted;
 
 /// The decision rule in words.
 pub(crate) fn rule(rule: DecisionRule, language: Language) -> &'static str {
@@ -57,7 +58,7 @@ fn shown(judged: &Judged, language: Language) -> Shown {
     let (unit, size) =
         limit.high.as_ref().or(limit.low.as_ref()).map_or(("", 1.0), |end| (end.unit.as_str(), end.size));
     // An end that was stated in another unit is shown by its SI value in this one.
-    let number = |end: &LimitEnd| if end.unit == unit { end.number } else { end.si / size };
+    let number = |end: &LimitEnd| if end.unit == unit { end.number } else { converted(end.si / size) };
     let end = |end: &LimitEnd| language.number(&number(end).to_string());
     let range = match (&limit.low, &limit.high) {
         (Some(low), Some(high)) => format!("{} … {}", end(low), end(high)),

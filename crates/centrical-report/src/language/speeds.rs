@@ -2,6 +2,8 @@
 
 use centrical_session::{DifferenceExtent, FollowedSpeeds, SpeedDifference, SpeedFinding, SpeedSource, SpeedsSummary};
 
+use crate::number::converted;
+
 /// Plateaus and mountings that a sentence names; of more it says how many.
 const NAMED: usize = 5;
 
@@ -204,7 +206,7 @@ fn percent(difference: f64) -> String {
 
 /// A relative uncertainty.
 fn ppm(uncertainty: f64) -> String {
-    format!("{} ppm", 1e6 * uncertainty)
+    format!("{} ppm", converted(1e6 * uncertainty))
 }
 
 /// A positive number to two or three significant digits.
