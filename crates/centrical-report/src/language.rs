@@ -11,6 +11,7 @@ mod speeds;
 use centrical_session::{Date, Symbol};
 
 use self::english::ENGLISH;
+pub(crate) use self::english_words::next_rest_brings;
 pub(crate) use self::live::LiveMessages;
 use self::live::{IN_ENGLISH, IN_RUSSIAN};
 pub(crate) use self::messages::Messages;

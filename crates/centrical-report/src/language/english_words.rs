@@ -218,11 +218,15 @@ pub(super) fn known_attitudes(known: usize, all: usize, uncertainty: &str) -> St
 }
 
 pub(super) fn next_rest(next: &NextAttitudeSummary) -> String {
-    let brings = match (&next.parameter, next.parameter_factor) {
+    format!("The best rest to add: {}; {}.", next.text, next_rest_brings(next))
+}
+
+/// What the attitude to add brings, without a full stop.
+pub(crate) fn next_rest_brings(next: &NextAttitudeSummary) -> String {
+    match (&next.parameter, next.parameter_factor) {
         (Some(parameter), Some(factor)) if next.gain == 0 => {
             format!("uncertainties become {:.2} of these on average, that of {parameter} {factor:.2}", next.factor)
         }
         _ => format!("it brings back {}", counted(next.gain, "combination")),
-    };
-    format!("The best rest to add: {}; {brings}.", next.text)
+    }
 }

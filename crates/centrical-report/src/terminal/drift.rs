@@ -27,7 +27,13 @@ pub(super) fn drift(screen: &mut Screen, result: &CalibrationResult) {
 /// Samples that are not used, by kind, and interpolated readings, if any.
 fn left_out(screen: &mut Screen, result: &CalibrationResult) {
     let LeftOutSummary { spikes, stuck, missing, repeated } = not_used(result);
-    let kinds = [("spikes", spikes), ("missing", missing), ("stuck", stuck), ("repeated", repeated)];
+    let messages = Language::English.messages();
+    let kinds = [
+        (messages.spikes, spikes),
+        (messages.missing, missing),
+        (messages.stuck, stuck),
+        (messages.repeated, repeated),
+    ];
     let named: Vec<String> =
         kinds.iter().filter(|(_, count)| *count > 0).map(|(kind, count)| format!("{kind} {count}")).collect();
     if !named.is_empty() {
@@ -47,14 +53,15 @@ fn left_out(screen: &mut Screen, result: &CalibrationResult) {
 }
 
 fn over_plateaus(screen: &mut Screen, drift: &DriftSummary) {
+    let messages = Language::English.messages();
     let shown: Vec<String> = (drift.slope.iter().zip(&drift.slope_uncertainty))
         .map(|(slope, u)| with_uncertainty(MINUTE * slope / MICRO_G, MINUTE * u / MICRO_G))
         .map(|(slope, u)| format!("{slope} ± {u}"))
         .collect();
     let verdict = match drift.plateau_verdict() {
-        PlateauDriftVerdict::NotSeen => "no drift seen",
-        PlateauDriftVerdict::WithinSpeed => "plateaus drift no more than their speeds may run",
-        PlateauDriftVerdict::Seen => "plateaus drift",
+        PlateauDriftVerdict::NotSeen => messages.no_drift,
+        PlateauDriftVerdict::WithinSpeed => messages.plateaus_drift_with_speed,
+        PlateauDriftVerdict::Seen => messages.plateaus_drift,
     };
     screen.fact(
         "DRIFT",
@@ -89,22 +96,24 @@ fn over_session(screen: &mut Screen, drift: &DriftSummary) {
         format!("f{} {change} ± {u}", trend.axis)
     });
     let trends: Vec<String> = trends.collect();
+    let messages = Language::English.messages();
     let verdict = match drift.session_verdict() {
-        SessionDriftVerdict::NotSeen => "no drift seen",
-        SessionDriftVerdict::Unsure => {
-            "a drift or, in one session of twenty, chance; bias_drift under [uncertainty] allows for one"
-        }
-        SessionDriftVerdict::WithinScatter => "no more than the plateaus scatter",
-        SessionDriftVerdict::Seen => "the session drifts",
+        SessionDriftVerdict::NotSeen => messages.no_drift,
+        SessionDriftVerdict::Unsure => messages.drift_or_chance,
+        SessionDriftVerdict::WithinScatter => messages.within_scatter,
+        SessionDriftVerdict::Seen => messages.session_drifts,
     };
-    screen.fact("", &format!("over the session: {} ug, {verdict}", trends.join(", ")));
+    let is_unsure = drift.session_verdict() == SessionDriftVerdict::Unsure;
+    let advice = if is_unsure { "; bias_drift under [uncertainty] allows for one" } else { "" };
+    screen.fact("", &format!("over the session: {} ug, {verdict}{advice}", trends.join(", ")));
 }
 
 fn repeats(screen: &mut Screen, drift: &DriftSummary) {
     let Some((worst, differ)) = drift.farthest_apart() else { return };
     let count = drift.repeats.len();
     let [first, second] = worst.indices.map(|index| index + 1);
-    let verdict = if differ { "they differ" } else { "no difference seen" };
+    let messages = Language::English.messages();
+    let verdict = if differ { messages.differ } else { messages.no_difference };
     screen.fact(
         "",
         &format!(
@@ -115,20 +124,15 @@ fn repeats(screen: &mut Screen, drift: &DriftSummary) {
 }
 
 fn tilts(screen: &mut Screen, tilt: &TiltSummary) {
+    let messages = Language::English.messages();
     let shown = |value: f64, u: f64| {
         let (value, u) = with_uncertainty(1e6 * value, 1e6 * u);
         format!("{value} ± {u} urad")
     };
     let verdict = match tilt.verdict() {
-        TiltVerdict::Agree => "they agree".to_owned(),
-        TiltVerdict::Differ => {
-            "they differ: the axis is not the same while it spins, something else turns with it, or an angle at rest is not the stated one"
-                .to_owned()
-        }
-        TiltVerdict::Absent => {
-            "no term turns with the arm: the times of the records are in another unit, or the recorder averages over a revolution"
-                .to_owned()
-        }
+        TiltVerdict::Agree => messages.tilts_agree.to_owned(),
+        TiltVerdict::Differ => messages.tilts_differ.to_owned(),
+        TiltVerdict::Absent => messages.tilt_absent.to_owned(),
         TiltVerdict::Reversed => {
             let as_if = shown(tilt.reversed, tilt.spinning_uncertainty);
             format!("it turns the other way ({as_if}): the sense of rotation is wrong")

@@ -3,6 +3,7 @@
 use centrical_session::{CalibrationResult, MICRO_G, PlateauSummary};
 
 use super::screen::Screen;
+use crate::language::next_rest_brings;
 use crate::number::{counted, two_digits};
 
 /// A lag that a filter or a recorder may well have [s].
@@ -83,13 +84,7 @@ pub(super) fn rests(screen: &mut Screen, result: &CalibrationResult) {
 /// Which attitude to add, and what it would bring.
 fn next_attitude(screen: &mut Screen, result: &CalibrationResult) {
     let Some(next) = &result.next_attitude else { return };
-    let brings = match (next.gain, &next.parameter, next.parameter_factor) {
-        (0, Some(parameter), Some(factor)) => {
-            format!("uncertainties become {:.2} of these on average, that of {parameter} {factor:.2}", next.factor)
-        }
-        (gain, ..) => format!("it brings back {}", counted(gain, "combination")),
-    };
-    screen.sentence(2, 4, &format!("next rest: {}: {brings}", next.text));
+    screen.sentence(2, 4, &format!("next rest: {}: {}", next.text, next_rest_brings(next)));
 }
 
 /// Residual along the specific force [m/s^2]: what its size misses of gravity.
