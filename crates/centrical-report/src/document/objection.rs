@@ -85,7 +85,8 @@ fn left_out(rivals: &[RivalSummary], language: Language) -> String {
 
 /// A rival by its cause, its formula and its name in sessions.
 pub(crate) fn rival(rival: &RivalSummary, language: Language) -> String {
-    format!("{} ({}; {})", cause(&rival.name, language), rival.formula, rival.name)
+    let formula = (language.messages().words.formula)(&rival.formula);
+    format!("{} ({formula}; {})", cause(&rival.name, language), rival.name)
 }
 
 /// The cause of a rival, by its name in sessions; of one mounting with its number.

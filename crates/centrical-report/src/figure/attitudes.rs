@@ -6,7 +6,7 @@ use std::fmt::Write;
 use centrical_session::CalibrationResult;
 
 use super::drawing::Figure;
-use crate::language::{Language, Messages};
+use crate::language::Language;
 use crate::plot::Escaped;
 
 /// Radius of a hemisphere, and the place of its centre, px.
@@ -31,13 +31,14 @@ pub(super) fn attitudes(result: &CalibrationResult, language: Language) -> Optio
         return None;
     }
     let next = result.next_attitude.as_ref();
-    let drawing = drawing(&rests, next.map(|next| next.up), messages);
+    let drawing = drawing(&rests, next.map(|next| next.up), language);
     let sentence = next.map(|next| format!(" {}", (messages.words.next_rest)(next))).unwrap_or_default();
     let caption = format!("{}{sentence}", messages.attitudes_caption);
     Some(Figure::new("attitudes", messages.attitudes, &caption, vec![drawing]))
 }
 
-fn drawing(rests: &[[f64; 3]], next: Option<[f64; 3]>, messages: &Messages) -> String {
+fn drawing(rests: &[[f64; 3]], next: Option<[f64; 3]>, language: Language) -> String {
+    let messages = language.messages();
     let mut svg = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"attitudes\" viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"{}\">\n{STYLE}",
         2.0 * PANEL.0,
@@ -50,10 +51,10 @@ fn drawing(rests: &[[f64; 3]], next: Option<[f64; 3]>, messages: &Messages) -> S
         hemisphere(&mut svg, messages.up_of[panel], messages.axis);
         // The rim belongs to both.
         for up in rests.iter().filter(|up| up[2] * sign > -1e-9) {
-            mark(&mut svg, "rest", 4.5, up, messages.rest);
+            mark(&mut svg, "rest", 4.5, up, &hover(messages.rest, up, language));
         }
         if let Some(up) = next.filter(|up| up[2] * sign > -1e-9) {
-            mark(&mut svg, "next", 9.0, &up, messages.next_rest);
+            mark(&mut svg, "next", 9.0, &up, &hover(messages.next_rest, &up, language));
         }
         svg.push_str("</g>\n");
     }
@@ -80,16 +81,25 @@ fn hemisphere(svg: &mut String, title: &str, axis: &str) {
     let _ = writeln!(svg, "<title>{} 1, {} 2</title>", Escaped(axis), Escaped(axis));
 }
 
+/// What is shown of a direction under the pointer.
+fn hover(name: &str, up: &[f64; 3], language: Language) -> String {
+    let components = up.map(|component| format!("{component:.2}"));
+    let direction = match language {
+        Language::English => components.join(", "),
+        Language::Russian => components.join("; ").replace('.', ","),
+    };
+    format!("{name}: {direction}")
+}
+
 /// A direction in Lambert's projection, `sqrt 2 sin(theta/2)` of the radius from the pole.
 fn mark(svg: &mut String, class: &str, radius: f64, up: &[f64; 3], title: &str) {
     let across = up[0].hypot(up[1]);
     let from_pole = RADIUS * SQRT_2 * (0.5 * across.atan2(up[2].abs())).sin();
     let along = |component: f64| if across > 0.0 { from_pole * component / across } else { 0.0 };
     let (x, y) = (CENTRE.0 + along(up[0]), CENTRE.1 - along(up[1]));
-    let text = format!("{title}: {:.2}, {:.2}, {:.2}", up[0], up[1], up[2]);
     let _ = writeln!(
         svg,
         "<circle class=\"{class}\" cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"{radius}\"><title>{}</title></circle>",
-        Escaped(&text)
+        Escaped(title)
     );
 }

@@ -304,6 +304,7 @@ pub(crate) const ENGLISH: Messages = Messages {
         pair_relation: words::pair_relation,
         reference: words::reference,
         rival: words::rival,
+        formula: str::to_owned,
         follows: words::follows,
         speed_finding: speeds::in_english,
         speeds_measured: speeds::measured_in_english,

@@ -328,6 +328,8 @@ pub(crate) struct Words {
     pub reference: fn(ReferencePoint) -> &'static str,
     /// The cause of a rival.
     pub rival: fn(Rival) -> &'static str,
+    /// The formula of a rival as results have it, its words in this language.
+    pub formula: fn(&str) -> String,
     /// What a pattern follows, without its place.
     pub follows: fn(&Follows) -> &'static str,
     /// What the telemetry shows against the schedule, as a sentence.

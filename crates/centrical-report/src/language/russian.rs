@@ -301,6 +301,7 @@ pub(crate) const RUSSIAN: Messages = Messages {
         pair_relation: words::pair_relation,
         reference: words::reference,
         rival: words::rival,
+        formula: words::formula,
         follows: words::follows,
         speed_finding: speeds::in_russian,
         speeds_measured: speeds::measured_in_russian,

@@ -191,6 +191,31 @@ pub(super) fn rival(rival: Rival) -> &'static str {
     }
 }
 
+/// Words in the formulas of rivals.
+const OF_FORMULAS: [(&str, &str); 15] = [
+    ("by position", "по положениям"),
+    ("by seat", "по посадочным местам"),
+    ("by mounting", "по установкам"),
+    ("by switch-on of rests", "по включениям в покое"),
+    ("by rest", "по положениям покоя"),
+    ("while spinning", "при вращении"),
+    ("those taken as exact", "принятые за точные"),
+    ("where", "при"),
+    ("on plateau n of a mounting", "на площадке n установки"),
+    ("after a rise of", "после роста"),
+    ("after a fall", "после спада"),
+    ("n plateaus before", "n площадок назад"),
+    ("at one set speed", "при одной заданной скорости"),
+    ("in one mounting", "в одной установке"),
+    ("rpm", "об/мин"),
+];
+
+/// A formula of a rival. Of one set speed it has the value, the only number with a point: `d f / d ln Omega^2 at 378.40 rpm`.
+pub(super) fn formula(formula: &str) -> String {
+    let worded = OF_FORMULAS.iter().fold(formula.to_owned(), |text, (english, russian)| text.replace(english, russian));
+    worded.replace(" at ", " при ").replace('.', ",")
+}
+
 /// The scatter from rest to rest and the drift of the biases that the uncertainties include.
 pub(super) fn between_rests(scatter: &str, drift: &str) -> String {
     format!(
@@ -231,4 +256,34 @@ pub(super) fn next_rest(next: &NextAttitudeSummary) -> String {
         _ => format!("вернёт потерянных комбинаций: {}", next.gain),
     };
     format!("Следующее положение покоя: {}; {brings}.", axes.join(", "))
+}
+
+#[cfg(test)]
+mod tests {
+    use centrical::{Difference, Extension, Rival};
+
+    use super::formula;
+
+    /// Letters and functions of formulas.
+    const SYMBOLS: &str = "Omega delta kappa tau alpha theta rho Gamma sgn ln sum";
+
+    #[test]
+    fn formulas_have_no_english_words() {
+        let single = [
+            Extension::OneSpeed(0),
+            Extension::OneMounting(Difference::Shift, 0),
+            Extension::OneMounting(Difference::Turn, 0),
+            Extension::OneMounting(Difference::Unit, 0),
+        ];
+        for rival in Rival::COMMON.into_iter().chain(single.map(Rival::Effect)) {
+            let russian = formula(rival.formula());
+            let words =
+                russian.split(|c: char| !c.is_ascii_alphabetic()).filter(|word| word.len() > 2 || *word == "by");
+            for word in words {
+                assert!(SYMBOLS.split(' ').any(|symbol| symbol == word), "{word} of {russian}");
+            }
+        }
+        assert_eq!(formula("d f / d ln Omega^2 at 378.40 rpm"), "d f / d ln Omega^2 при 378,40 об/мин");
+        assert_eq!(formula("df0, by switch-on of rests"), "df0, по включениям в покое");
+    }
 }

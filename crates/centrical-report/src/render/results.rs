@@ -65,14 +65,15 @@ fn row(body: &mut String, listed: &ListedResult, language: Language) -> std::fmt
     let session = &result.session;
     let is_acceptable = result.objections().is_empty();
     let (class, verdict) = if is_acceptable { ("good", words.acceptable) } else { ("bad", words.not_acceptable) };
-    let (label, id) = (format!("{} {}", session.unit_serial, session.date), Escaped(&listed.id));
+    let date = language.written_date(&session.date);
+    let (label, id) = (format!("{} {date}", session.unit_serial), Escaped(&listed.id));
     writeln!(
         body,
         "<tr><td><label><input type=\"radio\" name=\"first\" value=\"{id}\" aria-label=\"1: {0}\"> 1</label> \
          <label><input type=\"radio\" name=\"second\" value=\"{id}\" aria-label=\"2: {0}\"> 2</label></td><td>{1}</td><td>{2}</td>\
          <td>{3}</td><td><span class=\"{class}\">{verdict}</span> <a href=\"/report/{id}?lang={4}\">{5}</a></td><td>{file}</td></tr>",
         Escaped(&label),
-        Escaped(&session.date),
+        Escaped(&date),
         Escaped(&session.unit_model),
         Escaped(&session.unit_serial),
         language.code(),
