@@ -97,10 +97,8 @@ fn verdicts(result: &CalibrationResult, unit: Option<&UnitStatement>, language: 
     }
     let (fit, seen) = (&result.fit, &result.observability);
     let mut facts = Vec::new();
-    if fit.degrees_of_freedom > 0 {
-        let dof = fit.degrees_of_freedom as f64;
-        let expected = language.fixed((2.0 / dof).sqrt(), 3);
-        let ratio = language.fixed(fit.chi_squared / dof, 3);
+    if let Some((ratio, spread)) = fit.ratio() {
+        let [ratio, expected] = [ratio, spread].map(|number| language.fixed(number, 3));
         facts.push((messages.chi_squared, format!("{ratio} (1 ± {expected}; ν = {})", fit.degrees_of_freedom)));
         let chance = result.validity.as_ref().map(|validity| language.probability(validity.probability));
         facts.push((messages.chi_squared_chance, chance.unwrap_or_default()));
@@ -194,9 +192,8 @@ fn check_facts(validity: &ValiditySummary, language: Language) -> Vec<(String, S
             validity.rivals.iter().filter(|shown| shown.explains_most).map(|shown| rival(shown, language)).collect();
         facts.push((format!("{} ({})", messages.rivals_tested, validity.rivals_tested), listed(shown)));
     }
-    if let Some(worst) = validity.mountings.iter().min_by(|a, b| a.probability.total_cmp(&b.probability)) {
-        let count = validity.mountings.len();
-        let corrected = language.probability((count as f64 * worst.probability).min(1.0));
+    if let Some((worst, family_wise)) = validity.worst_mounting() {
+        let (count, corrected) = (validity.mountings.len(), language.probability(family_wise));
         let chi_squared = language.fixed(worst.chi_squared, 1);
         let (nu, p) = (worst.degrees_of_freedom, language.probability(worst.probability));
         let shown = format!(

@@ -287,12 +287,9 @@ fn fit(screen: &mut Screen, result: &CalibrationResult) {
         (words.termination)(fit.termination),
         counted(fit.iterations, "iteration")
     );
-    if fit.degrees_of_freedom == 0 {
+    let Some((ratio, spread)) = fit.ratio() else {
         return screen.fact("FIT", &format!("{course}; no redundancy, so nothing checks the stated uncertainties"));
-    }
-    let dof = fit.degrees_of_freedom as f64;
-    let spread = (2.0 / dof).sqrt();
-    let ratio = fit.chi_squared / dof;
+    };
     let degrees = counted(fit.degrees_of_freedom, "degree");
     screen.fact("FIT", &course);
     screen.fact("", &format!("chi^2 per degree of freedom {ratio:.3} (expected 1 ± {spread:.3}; {degrees})"));
@@ -354,9 +351,7 @@ fn validity(screen: &mut Screen, result: &CalibrationResult) {
     for pattern in &validity.patterns {
         screen.fact("", &pattern_in_words(pattern));
     }
-    let worst = validity.mountings.iter().min_by(|a, b| a.probability.total_cmp(&b.probability));
-    if let Some(worst) = worst {
-        let family_wise = (validity.mountings.len() as f64 * worst.probability).min(1.0);
+    if let Some((worst, family_wise)) = validity.worst_mounting() {
         screen.fact(
             "",
             &format!(

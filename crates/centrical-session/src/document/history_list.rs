@@ -89,6 +89,13 @@ pub struct HistoryLine {
     pub message: Option<String>,
 }
 
+impl HistoryLine {
+    /// chi^2 per degree of freedom; `None` of a failure, and without redundancy.
+    pub fn ratio(&self) -> Option<f64> {
+        self.chi_squared.filter(|_| self.degrees_of_freedom > 0).map(|c| c / self.degrees_of_freedom as f64)
+    }
+}
+
 impl HistoryList {
     /// The rows of the store in `folder`, in the order of unit, day and key.
     pub(crate) fn new(folder: &str, mut rows: Vec<Row>) -> Self {

@@ -143,7 +143,6 @@ fn signals(has_signals: bool) -> &'static str {
 }
 
 fn row(body: &mut String, line: &HistoryLine, serial: &str) {
-    let ratio = line.chi_squared.filter(|_| line.degrees_of_freedom > 0).map(|c| c / line.degrees_of_freedom as f64);
     let (verdict, class) = match line.acceptable {
         Some(true) => ("acceptable", "good"),
         Some(false) => ("not acceptable", "bad"),
@@ -158,7 +157,7 @@ fn row(body: &mut String, line: &HistoryLine, serial: &str) {
         Escaped(&day),
         Escaped(&line.unit_model),
         Escaped(&line.station),
-        ratio.map_or_else(String::new, |ratio| format!("{ratio:.3}")),
+        line.ratio().map_or_else(String::new, |ratio| format!("{ratio:.3}")),
         Escaped(&why)
     );
 }

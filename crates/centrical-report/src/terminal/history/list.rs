@@ -22,8 +22,7 @@ pub fn history_list_text(list: &HistoryList) -> Screen {
     ];
     let mut table = Table::new(3, columns);
     for line in &list.calibrations {
-        let ratio = line.chi_squared.filter(|_| line.degrees_of_freedom > 0);
-        let ratio = ratio.map_or(String::new(), |c| format!("{:.3}", c / line.degrees_of_freedom as f64));
+        let ratio = line.ratio().map_or(String::new(), |ratio| format!("{ratio:.3}"));
         let cells = [&line.date, &line.unit_model, &line.unit_serial, &line.station].map(|text| text.as_str().into());
         table.row(cells.into_iter().chain([ratio.into(), verdict(line).into()]));
     }

@@ -65,6 +65,14 @@ pub struct ValiditySummary {
     pub rivals: Vec<RivalSummary>,
 }
 
+impl ValiditySummary {
+    /// The mounting that its prediction from all others meets worst, with the probability of as bad a worst one (Bonferroni).
+    pub fn worst_mounting(&self) -> Option<(&MountingPrediction, f64)> {
+        let worst = self.mountings.iter().min_by(|a, b| a.probability.total_cmp(&b.probability))?;
+        Some((worst, (self.mountings.len() as f64 * worst.probability).min(1.0)))
+    }
+}
+
 /// A plateau that stands out.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct OutlyingPlateau {

@@ -284,6 +284,15 @@ pub struct FitSummary {
     pub degrees_of_freedom: usize,
 }
 
+impl FitSummary {
+    /// chi^2 per degree of freedom with its standard deviation, about 1 if the model and the weights are right; `None` without
+    /// redundancy.
+    pub fn ratio(&self) -> Option<(f64, f64)> {
+        let degrees = self.degrees_of_freedom as f64;
+        (degrees > 0.0).then(|| (self.chi_squared / degrees, (2.0 / degrees).sqrt()))
+    }
+}
+
 /// A mounting.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct MountingSummary {
