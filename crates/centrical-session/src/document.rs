@@ -41,11 +41,11 @@ pub use self::draft::{DraftReport, LineToFillIn};
 pub(crate) use self::history::FAMILY;
 pub(crate) use self::history::shown_readings;
 pub use self::history::{
-    BatchSummary, BatchWithoutUnit, BeyondLimit, CHART_SCHEMA, CapabilitySummary, ChartReport, ChartSignal,
-    DeviatingSession, DueDate, LeftOutSession, NotComparedParameter, OutlyingUnit, PastSession, ReadingHistory,
-    STATION_HISTORY_SCHEMA, SamenessSummary, StationHistoryReport, StationParameter, UNIT_HISTORY_SCHEMA,
-    UNITS_HISTORY_SCHEMA, UnitFinding, UnitFindingKind, UnitHistoryReport, UnitParameter, UnitsHistoryReport,
-    UnitsParameter, UntestedStation,
+    BatchSummary, BatchWithoutUnit, BeyondLimit, CHART_SCHEMA, CapabilitySummary, ChartKind, ChartReport, ChartRule,
+    ChartSignal, DeviatingSession, DueDate, LeftOutSession, NotComparedParameter, OutlyingUnit, PastSession,
+    ReadingHistory, STATION_HISTORY_SCHEMA, SamenessSummary, StationHistoryReport, StationParameter,
+    UNIT_HISTORY_SCHEMA, UNITS_HISTORY_SCHEMA, UnitFinding, UnitFindingKind, UnitHistoryReport, UnitParameter,
+    UnitsHistoryReport, UnitsParameter, UntestedStation,
 };
 pub use self::history_list::{Doubt, DoubtKind, HistoryLine, HistoryList};
 pub(crate) use self::json::line as json_line;
@@ -82,7 +82,7 @@ pub use self::steadiness::{
 };
 pub(crate) use self::truth::{Written, WrittenSession, WrittenTumble, truth_json};
 pub use self::watch::{
-    GroupProgress, HistoryEntry, HistoryEstimate, InnovationSummary, LIVE_SCHEMA, LiveBenefit, LiveCause, LiveLost,
-    LivePlateau, LiveRecord, LiveReport, LiveSpeed, LiveStatus, PlateauLabel, WatchState, WatchedPlateau,
+    Agreement, GroupProgress, HistoryEntry, HistoryEstimate, InnovationSummary, LIVE_SCHEMA, LiveBenefit, LiveCause,
+    LiveLost, LivePlateau, LiveRecord, LiveReport, LiveSpeed, LiveStatus, PlateauLabel, WatchState, WatchedPlateau,
     append_history, keep_history, read_history, seconds_since_1970,
 };

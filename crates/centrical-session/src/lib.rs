@@ -47,6 +47,10 @@ pub use document::{
     SeriesSummary, SimulationReport, SquareSummary, TermSupport, UnscheduledPlateau, WithoutOutliers, WrittenDocument,
 };
 pub use document::{
+    Agreement, GroupProgress, LiveBenefit, LiveCause, LiveLost, LivePlateau, LiveRecord, LiveReport, LiveSpeed,
+    LiveStatus, PlateauLabel, seconds_since_1970,
+};
+pub use document::{
     AxesName, AxesParameter, AxesSummary, BetweenRestsSummary, BudgetSource, BudgetSummary, CalibrationResult,
     ChosenRest, ChosenRests, CombinationReport, ConditionReport, ConvergenceSummary, CreepSummary, CriterionName,
     DifferenceExtent, DisturbedPlateau, DriftSummary, FitSummary, FollowedSpeeds, Follows, FrontierRow, GoalReport,
@@ -60,14 +64,10 @@ pub use document::{
     TermSummary, TiltSummary, TiltVerdict, ValiditySummary, WatchState, WatchedPlateau, read_history, unit_name,
 };
 pub use document::{
-    BatchSummary, BatchWithoutUnit, BeyondLimit, CapabilitySummary, ChartReport, ChartSignal, DeviatingSession,
-    DueDate, FailedSession, LeftOutSession, NotComparedParameter, OutlyingUnit, PastSession, ReadingHistory,
-    SamenessSummary, StationHistoryReport, StationParameter, UnitFinding, UnitFindingKind, UnitHistoryReport,
-    UnitParameter, UnitsHistoryReport, UnitsParameter, UntestedStation,
-};
-pub use document::{
-    GroupProgress, LiveBenefit, LiveCause, LiveLost, LivePlateau, LiveRecord, LiveReport, LiveSpeed, LiveStatus,
-    PlateauLabel, seconds_since_1970,
+    BatchSummary, BatchWithoutUnit, BeyondLimit, CapabilitySummary, ChartKind, ChartReport, ChartRule, ChartSignal,
+    DeviatingSession, DueDate, FailedSession, LeftOutSession, NotComparedParameter, OutlyingUnit, PastSession,
+    ReadingHistory, SamenessSummary, StationHistoryReport, StationParameter, UnitFinding, UnitFindingKind,
+    UnitHistoryReport, UnitParameter, UnitsHistoryReport, UnitsParameter, UntestedStation,
 };
 pub use error::{Error, ErrorKind, NoErrorModel, Place};
 pub use experiment::{
@@ -104,4 +104,4 @@ pub use store::{
     Added, Depth, Failure, Row, RowPrior, RowTable, RowTerm, Rows, Selection, SharedInfluence, Status, Store, sha256,
 };
 pub use truth::Truth;
-pub use units::{MICRO_G, Symbol, Unit, UnknownUnit, customary};
+pub use units::{MICRO_G, Symbol, Unit, UnknownUnit, customary, rpm};

@@ -10,6 +10,11 @@ use crate::quantity::{Dimension, NotThatQuantity, Quantity};
 /// One micro-g in m/s^2.
 pub const MICRO_G: f64 = 1e-6 * STANDARD_GRAVITY;
 
+/// A speed in revolutions a minute [rad/s].
+pub fn rpm(omega: f64) -> f64 {
+    omega * 60.0 / TAU
+}
+
 /// 10 rev/s [rad/s], the field's top speed: deformations that grow with the square of the speed are shown as they are there.
 const TOP_SPEED: f64 = 10.0 * TAU;
 

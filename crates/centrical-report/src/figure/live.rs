@@ -4,6 +4,7 @@ use centrical_session::{GroupProgress, HistoryEntry, LiveReport};
 
 use super::drawing::{Figure, of_plot};
 use super::history::history_figure;
+use crate::evaluation::expanded_of_normal;
 use crate::language::Language;
 use crate::plot::{Axis, Plot, Point, Series};
 
@@ -23,10 +24,9 @@ pub fn live_readings_figure(live: &LiveReport, language: Language) -> Option<Fig
 pub fn live_speeds_figure(live: &LiveReport, language: Language) -> Option<Figure> {
     let words = language.live();
     let point = |speed: &centrical_session::LiveSpeed| {
-        let set = speed.plateau.omega.abs();
-        let (deviation, expanded) = (1e6 * (speed.measured.abs() / set - 1.0), 2e6 * speed.uncertainty);
+        let (deviation, expanded) = (1e6 * speed.deviation()?, 1e6 * expanded_of_normal(speed.uncertainty));
         let x = speed.plateau.set_point as f64 + 1.0;
-        (set > 0.0).then(|| Point::new(x, deviation).with_interval(deviation - expanded, deviation + expanded))
+        Some(Point::new(x, deviation).with_interval(deviation - expanded, deviation + expanded))
     };
     let points: Vec<Point> = live.speeds.iter().filter_map(point).collect();
     if points.is_empty() {

@@ -1,6 +1,6 @@
 //! Histories as plots: a parameter of a unit over its calibrations, control charts.
 
-use centrical_session::{ChartReport, ParameterLimits, UnitHistoryReport, UnitParameter, customary};
+use centrical_session::{ChartKind, ChartReport, ParameterLimits, UnitHistoryReport, UnitParameter, customary};
 
 use crate::plot::{Axis, Plot, Point, Series};
 
@@ -45,15 +45,10 @@ pub fn chart_plots(report: &ChartReport) -> Vec<(&'static str, Plot)> {
     };
     let x = || Axis::linear("session, in the order of time");
     let y = |what: &str| Axis::linear(format!("{what}, {unit}"));
-    let signals = |rule: &str, values: &[f64], first: usize, factor: f64| {
-        let of = report.signals.iter().filter(|signal| signal.rule.starts_with(rule));
+    let signals = |kind: ChartKind, values: &[f64], first: usize, factor: f64| {
+        let of = report.signals.iter().filter(|signal| signal.rule.kind() == kind);
         let at = of.filter_map(|signal| Some((signal.session, values.get((signal.session + 1).checked_sub(first)?)?)));
         Series::markers("signals", at.map(|(n, value)| Point::new((n + 1) as f64, factor * value)).collect())
-    };
-    let single = if report.signals.iter().any(|signal| signal.rule.starts_with("western")) {
-        "western-electric"
-    } else {
-        "nelson"
     };
     let half = |sign: f64| -> Vec<Point> {
         let ends = report.ewma_half_widths.iter().map(|half| report.centre + sign * half);
@@ -69,14 +64,14 @@ pub fn chart_plots(report: &ChartReport) -> Vec<(&'static str, Plot)> {
                 .with(level("centre", factor * report.centre))
                 .with(level("lower limit", factor * report.limits[0]))
                 .with(level("upper limit", factor * report.limits[1]))
-                .with(signals(single, &report.values, 1, factor)),
+                .with(signals(ChartKind::Individuals, &report.values, 1, factor)),
         ),
         (
             "moving-ranges",
             Plot::new(format!("{}: moving ranges", report.name), x(), y("moving range"))
                 .with(Series::line_and_markers("ranges", numbered(&report.ranges, 2, factor.abs())))
                 .with(level("upper limit", factor.abs() * report.range_limit))
-                .with(signals("moving-range", &report.ranges, 2, factor.abs())),
+                .with(signals(ChartKind::MovingRange, &report.ranges, 2, factor.abs())),
         ),
         (
             "ewma",
@@ -84,7 +79,7 @@ pub fn chart_plots(report: &ChartReport) -> Vec<(&'static str, Plot)> {
                 .with(Series::line_and_markers("means", numbered(&report.ewma, 1, factor)))
                 .with(Series::line("lower limit", half(-1.0)))
                 .with(Series::line("upper limit", half(1.0)))
-                .with(signals("ewma", &report.ewma, 1, factor)),
+                .with(signals(ChartKind::Ewma, &report.ewma, 1, factor)),
         ),
         (
             "cusum",
@@ -92,7 +87,7 @@ pub fn chart_plots(report: &ChartReport) -> Vec<(&'static str, Plot)> {
                 .with(Series::line_and_markers("upwards", numbered(&report.cusum_upper, 1, 1.0)))
                 .with(Series::line_and_markers("downwards", numbered(&report.cusum_lower, 1, 1.0)))
                 .with(level("limit", report.cusum_limit))
-                .with(signals("cusum", &largest_sums, 1, 1.0)),
+                .with(signals(ChartKind::Cusum, &largest_sums, 1, 1.0)),
         ),
     ]
 }

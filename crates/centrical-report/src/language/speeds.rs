@@ -1,6 +1,8 @@
 //! Sentences about the speeds of plateaus, in each language.
 
-use centrical_session::{DifferenceExtent, FollowedSpeeds, SpeedDifference, SpeedFinding, SpeedSource, SpeedsSummary};
+use centrical_session::{
+    DifferenceExtent, FollowedSpeeds, SpeedDifference, SpeedFinding, SpeedSource, SpeedsSummary, rpm,
+};
 
 use crate::number::converted;
 
@@ -191,10 +193,6 @@ fn list(names: impl ExactSizeIterator<Item = impl ToString>, others: &str) -> St
     let more = if names.len() > NAMED { format!(" {others}") } else { String::new() };
     let named: Vec<String> = names.take(NAMED).map(|name| name.to_string()).collect();
     format!("{}{more}", named.join(", "))
-}
-
-fn rpm(speed: f64) -> f64 {
-    speed * 60.0 / std::f64::consts::TAU
 }
 
 /// A relative difference in percent, to two significant digits at least.

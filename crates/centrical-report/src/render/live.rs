@@ -2,9 +2,10 @@
 
 use std::fmt::Write;
 
-use centrical_session::{HistoryEntry, LivePlateau, LiveReport, LiveStatus, PlateauLabel};
+use centrical_session::{Agreement, HistoryEntry, LivePlateau, LiveReport, LiveStatus, PlateauLabel, rpm};
 
 use crate::document::rival;
+use crate::evaluation::expanded_of_normal;
 use crate::figure::{Figure, live_readings_figure, live_speeds_figure, live_uncertainties_figure};
 use crate::language::{Language, LiveMessages};
 use crate::number::two_digits;
@@ -17,14 +18,8 @@ pub const LIVE_STYLE: &str =
 /// Script of the live page: it takes the panel from the events of the server.
 pub const LIVE_SCRIPT: &str = include_str!("html/live.js");
 
-/// Revolutions a minute in a radian a second.
-const RPM: f64 = 30.0 / std::f64::consts::PI;
-
 /// Plateaus whose speeds stand in the table.
 const LAST_SPEEDS: usize = 8;
-
-/// A chance below which a plateau that fits is shown in amber.
-const IMPROBABLE: f64 = 0.05;
 
 /// The page around the panel of `live`, as it is at the time `now` [s since 1970].
 pub fn live_page(live: &LiveReport, history: &[HistoryEntry], now: f64, language: Language) -> String {
@@ -193,11 +188,11 @@ impl Panel<'_> {
             return writeln!(out, "<p>{}</p></section>", words.none_yet);
         };
         let test = last.innovation;
-        let (class, verdict) = match () {
-            () if last.alarm => ("bad", words.does_not_fit),
-            () if test.degrees_of_freedom == 0 => ("plain", words.untested),
-            () if test.probability < IMPROBABLE => ("amber", words.improbable),
-            () => ("good", words.fits),
+        let (class, verdict) = match last.agreement() {
+            Agreement::DoesNotFit => ("bad", words.does_not_fit),
+            Agreement::Untested => ("plain", words.untested),
+            Agreement::Improbable => ("amber", words.improbable),
+            Agreement::Fits => ("good", words.fits),
         };
         write!(
             out,
@@ -236,7 +231,13 @@ impl Panel<'_> {
             Some((offset, uncertainty)) => {
                 let shown = uncertainty.map_or_else(
                     || self.language.fixed(offset, 3),
-                    |u| format!("{} ± {}", self.language.fixed(offset, 3), self.language.number(&two_digits(2.0 * u))),
+                    |u| {
+                        format!(
+                            "{} ± {}",
+                            self.language.fixed(offset, 3),
+                            self.language.number(&two_digits(expanded_of_normal(u)))
+                        )
+                    },
                 );
                 fact(out, words.clock_offset, &format!("{shown} {}", words.second))?;
             }
@@ -337,7 +338,7 @@ impl Panel<'_> {
     fn speeds(&self, out: &mut String) -> std::fmt::Result {
         let (live, words) = (self.live, self.words);
         open(out, "speeds", words.speeds)?;
-        let measured: Vec<_> = live.speeds.iter().filter(|speed| speed.plateau.omega != 0.0).collect();
+        let measured: Vec<_> = live.speeds.iter().filter_map(|speed| Some((speed, speed.deviation()?))).collect();
         if measured.is_empty() {
             return writeln!(out, "<p>{}</p></section>", words.no_speeds);
         }
@@ -347,7 +348,7 @@ impl Panel<'_> {
              <th scope=\"col\" class=\"number\">{}</th><th scope=\"col\" class=\"number\">{}</th></tr></thead><tbody>",
             words.plateau, words.set_speed, words.measured, words.deviation
         )?;
-        for speed in measured.iter().rev().take(LAST_SPEEDS) {
+        for (speed, deviation) in measured.iter().rev().take(LAST_SPEEDS) {
             let (set, found) = (speed.plateau.omega.abs(), speed.measured.abs());
             write!(
                 out,
@@ -355,10 +356,10 @@ impl Panel<'_> {
                  <td class=\"number\">{} ± {}</td></tr>",
                 speed.plateau.mounting,
                 speed.plateau.plateau,
-                self.language.fixed(set * RPM, 3),
-                self.language.fixed(found * RPM, 3),
-                self.language.fixed(1e6 * (found / set - 1.0), 1),
-                self.language.number(&two_digits(2e6 * speed.uncertainty))
+                self.language.fixed(rpm(set), 3),
+                self.language.fixed(rpm(found), 3),
+                self.language.fixed(1e6 * deviation, 1),
+                self.language.number(&two_digits(1e6 * expanded_of_normal(speed.uncertainty)))
             )?;
         }
         out.push_str("</tbody></table></div></section>\n");
@@ -374,7 +375,7 @@ impl Panel<'_> {
         } else if omega == 0.0 {
             format!("{mounting}:{plateau}, {} {}°", words.rest_at, self.language.fixed(angle.to_degrees(), 0))
         } else {
-            format!("{mounting}:{plateau}, {} {}", self.language.fixed(omega * RPM, 1), words.rpm)
+            format!("{mounting}:{plateau}, {} {}", self.language.fixed(rpm(omega), 1), words.rpm)
         }
     }
 }
@@ -389,8 +390,8 @@ fn fact(out: &mut String, name: &str, value: &str) -> std::fmt::Result {
     write!(out, "<div><dt>{name}</dt><dd>{value}</dd></div>")
 }
 
-/// One word for what the watch does, as the metrics have it.
-pub(super) fn status_word(status: LiveStatus, is_silent: bool) -> &'static str {
+/// One word for what the watch does, the same in every language.
+fn status_word(status: LiveStatus, is_silent: bool) -> &'static str {
     match status {
         _ if is_silent => "silent",
         LiveStatus::Following => "following",

@@ -2,7 +2,7 @@
 
 use centrical::uncertainty::{Budget, CurvePoint, Degrees, Level, Pattern, Validity};
 use centrical::{Experiment, Fit, MeasurementModel, Parameter, Parameters, STANDARD_GRAVITY};
-use centrical_session::{Assessment, MICRO_G, PatternSummary, customary};
+use centrical_session::{Assessment, MICRO_G, PatternSummary, customary, rpm};
 
 use super::calibrate::verdict_text;
 use super::pattern::pattern_in_words;
@@ -199,7 +199,7 @@ fn outliers_text(screen: &mut Screen, model: &MeasurementModel, [before, after]:
 fn plateau(experiment: &Experiment, index: usize) -> String {
     let set_point = &experiment.set_points[index];
     let before = experiment.set_points[..index].iter().filter(|s| s.mounting == set_point.mounting).count();
-    let speed = set_point.omega * 60.0 / std::f64::consts::TAU;
+    let speed = rpm(set_point.omega);
     format!("mounting {}, plateau {}, {speed:.1} rpm", set_point.mounting + 1, before + 1)
 }
 

@@ -1,12 +1,10 @@
 //! A plan as text for the terminal: time against uncertainty, the schedule, the reason for each plateau, the uncertainties to be
 //! expected.
 
-use std::f64::consts::TAU;
-
 use centrical_session::harmless_line;
 use centrical_session::{
     ChosenRests, CriterionName, GoalReport, MICRO_G, PlanReport, PlannedMounting, PlannedPlateau, ReasonReport,
-    customary,
+    customary, rpm,
 };
 
 use super::prediction::prediction_text;
@@ -159,7 +157,7 @@ fn set(plateau: &PlannedPlateau) -> String {
     if plateau.speed == 0.0 {
         format!("rest at {:.0} deg", plateau.angle.to_degrees())
     } else {
-        format!("{:.2} rpm", plateau.speed * 60.0 / TAU)
+        format!("{:.2} rpm", rpm(plateau.speed))
     }
 }
 

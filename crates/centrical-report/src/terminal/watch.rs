@@ -1,10 +1,8 @@
 //! A session on the way, as a table for the terminal: what is known by now, and what the next plateau will bring.
 
-use std::f64::consts::PI;
-
 use centrical::MeasurementModel;
 use centrical::fit::filter::Lifetimes;
-use centrical_session::{GroupProgress, InnovationSummary, PlateauName, Session, WatchProgress, WatchedPlateau};
+use centrical_session::{GroupProgress, InnovationSummary, PlateauName, Session, WatchProgress, WatchedPlateau, rpm};
 
 use super::screen::Screen;
 use super::table::{Align, Cell, Table};
@@ -77,7 +75,7 @@ fn label(session: &Session, set_point: usize) -> String {
     } else if set.is_rest() {
         format!("{mounting}:{plateau}, rest at {:.0} deg", set.angle.to_degrees())
     } else {
-        format!("{mounting}:{plateau}, {:.1} rpm", set.omega * 30.0 / PI)
+        format!("{mounting}:{plateau}, {:.1} rpm", rpm(set.omega))
     }
 }
 

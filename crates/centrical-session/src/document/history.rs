@@ -5,7 +5,7 @@ mod station;
 mod unit;
 mod units;
 
-pub use self::chart::{CHART_SCHEMA, ChartReport, ChartSignal};
+pub use self::chart::{CHART_SCHEMA, ChartKind, ChartReport, ChartRule, ChartSignal};
 pub(crate) use self::station::FAMILY;
 pub use self::station::{STATION_HISTORY_SCHEMA, StationHistoryReport, StationParameter};
 pub(crate) use self::unit::shown_readings;

@@ -6,7 +6,7 @@ mod state;
 
 pub use self::history::{HistoryEntry, HistoryEstimate, InnovationSummary, append_history, keep_history, read_history};
 pub use self::live::{
-    GroupProgress, LIVE_SCHEMA, LiveBenefit, LiveCause, LiveLost, LivePlateau, LiveRecord, LiveReport, LiveSpeed,
-    LiveStatus, PlateauLabel, seconds_since_1970,
+    Agreement, GroupProgress, LIVE_SCHEMA, LiveBenefit, LiveCause, LiveLost, LivePlateau, LiveRecord, LiveReport,
+    LiveSpeed, LiveStatus, PlateauLabel, seconds_since_1970,
 };
 pub use self::state::{WatchState, WatchedPlateau};

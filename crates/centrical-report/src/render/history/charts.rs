@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use centrical_session::{ChartReport, NoHistory, customary};
+use centrical_session::{ChartKind, ChartReport, NoHistory, customary};
 
 use super::frame::panels;
 use crate::figure::chart_plots;
@@ -18,12 +18,12 @@ pub struct StoreCharts {
     pub missing: Option<NoHistory>,
 }
 
-/// The kinds of charts, by the beginning of their rules.
-const KINDS: [(&str, &[&str]); 4] = [
-    ("individuals", &["nelson", "western-electric"]),
-    ("moving range", &["moving-range"]),
-    ("EWMA", &["ewma"]),
-    ("CUSUM", &["cusum"]),
+/// The kinds of charts with their titles.
+const KINDS: [(&str, ChartKind); 4] = [
+    ("individuals", ChartKind::Individuals),
+    ("moving range", ChartKind::MovingRange),
+    ("EWMA", ChartKind::Ewma),
+    ("CUSUM", ChartKind::Cusum),
 ];
 
 impl StoreCharts {
@@ -62,8 +62,8 @@ impl StoreCharts {
     fn table(&self, body: &mut String) {
         body.push_str("<div class=\"scroll\"><table class=\"sortable\"><thead><tr><th scope=\"col\">parameter</th><th scope=\"col\">unit</th>");
         body.push_str("<th scope=\"col\" class=\"number\">centre</th>");
-        for (kind, _) in KINDS {
-            let _ = write!(body, "<th scope=\"col\" class=\"number\">{kind}</th>");
+        for (title, _) in KINDS {
+            let _ = write!(body, "<th scope=\"col\" class=\"number\">{title}</th>");
         }
         body.push_str("<th scope=\"col\">last signal</th></tr></thead><tbody>\n");
         for chart in &self.charts {
@@ -74,9 +74,8 @@ impl StoreCharts {
                 "<tr><th scope=\"row\">{}</th><td>{unit}</td><td class=\"number\">{centre}</td>",
                 Escaped(&chart.name)
             );
-            for (_, rules) in KINDS {
-                let is_of = |rule: &str| rules.iter().any(|start| rule.starts_with(start));
-                let count = chart.signals.iter().filter(|signal| is_of(&signal.rule)).count();
+            for (_, kind) in KINDS {
+                let count = chart.signals.iter().filter(|signal| signal.rule.kind() == kind).count();
                 let _ = write!(body, "<td class=\"number\">{count}</td>");
             }
             let last = chart.signals.last().and_then(|signal| Some((signal, chart.sessions.get(signal.session)?)));

@@ -41,7 +41,7 @@ pub fn chart_text(report: &ChartReport) -> Screen {
             session.date.to_string().into(),
             session.unit_serial.as_str().into(),
             with_uncertainty(factor * report.values[signal.session], factor.abs() * report.deviation).0.into(),
-            signal.rule.as_str().into(),
+            signal.rule.to_string().into(),
             signal.words.into(),
         ]);
     }

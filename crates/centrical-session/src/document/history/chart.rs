@@ -1,7 +1,9 @@
 //! A control chart, as a document: schema `centrical-chart/1`.
 
+use std::fmt::{self, Display, Formatter};
+
 use centrical::Group;
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
 use super::unit::PastSession;
 use crate::document::json;
@@ -60,10 +62,68 @@ pub struct ChartReport {
 pub struct ChartSignal {
     /// The session, counted from 0.
     pub session: usize,
-    /// What gave it: nelson-1 ..., western-electric-1 ..., moving-range, ewma, cusum.
-    pub rule: String,
+    /// What gave it.
+    pub rule: ChartRule,
     /// The rule in words.
     pub words: &'static str,
+}
+
+/// What gives a signal. Rules of single values have their number in their set.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ChartRule {
+    /// `nelson-1`, ...
+    Nelson(usize),
+    /// `western-electric-1`, ...
+    WesternElectric(usize),
+    /// `moving-range`
+    MovingRange,
+    /// `ewma`
+    Ewma,
+    /// `cusum`
+    Cusum,
+}
+
+/// A kind of chart.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ChartKind {
+    /// Single values.
+    Individuals,
+    /// Steps from value to value.
+    MovingRange,
+    /// Exponentially weighted means.
+    Ewma,
+    /// Cumulative sums.
+    Cusum,
+}
+
+impl ChartRule {
+    /// The chart that the rule is of.
+    pub fn kind(self) -> ChartKind {
+        match self {
+            Self::Nelson(_) | Self::WesternElectric(_) => ChartKind::Individuals,
+            Self::MovingRange => ChartKind::MovingRange,
+            Self::Ewma => ChartKind::Ewma,
+            Self::Cusum => ChartKind::Cusum,
+        }
+    }
+}
+
+impl Display for ChartRule {
+    fn fmt(&self, f: &mut Formatter) -> fmt::Result {
+        match self {
+            Self::Nelson(number) => write!(f, "nelson-{number}"),
+            Self::WesternElectric(number) => write!(f, "western-electric-{number}"),
+            Self::MovingRange => f.write_str("moving-range"),
+            Self::Ewma => f.write_str("ewma"),
+            Self::Cusum => f.write_str("cusum"),
+        }
+    }
+}
+
+impl Serialize for ChartRule {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(self)
+    }
 }
 
 impl ChartReport {

@@ -1,10 +1,10 @@
 //! What the residuals say of effects that the model leaves out, and what the result rests on.
 
-use std::f64::consts::PI;
-
 use centrical::uncertainty::{RivalTest, Suspects, Unseen};
 use centrical::{Experiment, Extension, Group, MeasurementModel, Rival};
 use serde::{Deserialize, Serialize};
+
+use crate::units::rpm;
 
 /// In the formula of a speed, where its value stands.
 const ONE_SET_SPEED: &str = "one set speed";
@@ -112,7 +112,7 @@ fn formula(rival: Rival, experiment: &Experiment) -> String {
     match rival {
         Rival::Effect(Extension::OneSpeed(speed)) if speed < speeds.len() => {
             let omega = experiment.set_points[speeds[speed].0].omega.abs();
-            rival.formula().replace(ONE_SET_SPEED, &format!("{:.2} rpm", omega * 30.0 / PI))
+            rival.formula().replace(ONE_SET_SPEED, &format!("{:.2} rpm", rpm(omega)))
         }
         _ => rival.formula().to_owned(),
     }

@@ -127,6 +127,36 @@ pub struct LivePlateau {
     pub held_out: bool,
 }
 
+/// How a plateau agrees with those before it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Agreement {
+    /// It raises an alarm.
+    DoesNotFit,
+    /// Nothing before it predicts its readings.
+    Untested,
+    /// It fits, at a small chance.
+    Improbable,
+    /// It fits.
+    Fits,
+}
+
+impl LivePlateau {
+    /// How the plateau agrees with those before it.
+    pub fn agreement(&self) -> Agreement {
+        /// A chance below which a plateau that fits is pointed out.
+        const IMPROBABLE: f64 = 0.05;
+        if self.alarm {
+            Agreement::DoesNotFit
+        } else if self.innovation.degrees_of_freedom == 0 {
+            Agreement::Untested
+        } else if self.innovation.probability < IMPROBABLE {
+            Agreement::Improbable
+        } else {
+            Agreement::Fits
+        }
+    }
+}
+
 /// A group of unknowns: its largest standard uncertainty, in the customary unit.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct GroupProgress {
@@ -206,6 +236,14 @@ pub struct LiveSpeed {
     pub measured: f64,
     /// Its relative standard uncertainty.
     pub uncertainty: f64,
+}
+
+impl LiveSpeed {
+    /// Measured less set speed, relative; `None` of a plateau at rest.
+    pub fn deviation(&self) -> Option<f64> {
+        let set = self.plateau.omega.abs();
+        (set > 0.0).then(|| self.measured.abs() / set - 1.0)
+    }
 }
 
 /// A record as it stands.

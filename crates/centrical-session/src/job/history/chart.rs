@@ -6,7 +6,7 @@ use centrical::history::{Control, Rule};
 
 use super::calibrated::{Calibrated, Finder};
 use super::no_history::{FEWEST, NoHistory};
-use crate::document::{CHART_SCHEMA, ChartReport, ChartSignal, Program};
+use crate::document::{CHART_SCHEMA, ChartReport, ChartRule, ChartSignal, Program};
 
 /// The rules of single values.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -82,11 +82,11 @@ pub fn chart(
     let ranges = Control::moving_ranges(&values);
     let (mut means, mut sums) = (control.ewma(&values, EWMA.0, EWMA.1), control.cusum(&values, CUSUM.0, CUSUM.1));
     let beyond = ranges.iter().enumerate().filter(|(_, range)| **range > control.range_limit()).map(|(n, _)| n + 1);
-    let named = |rule: &'static str, words| move |session| ChartSignal { session, rule: rule.to_owned(), words };
+    let named = |rule: ChartRule, words| move |session| ChartSignal { session, rule, words };
     let mut all: Vec<ChartSignal> = single_values(&values, control, request.rules);
-    all.extend(beyond.map(named("moving-range", "a step beyond the limit of the moving range")));
-    all.extend(means.signals.iter().copied().map(named("ewma", "the weighted mean is beyond its limits")));
-    all.extend(sums.signals.iter().copied().map(named("cusum", "the cumulative sum is beyond its limit")));
+    all.extend(beyond.map(named(ChartRule::MovingRange, "a step beyond the limit of the moving range")));
+    all.extend(means.signals.iter().copied().map(named(ChartRule::Ewma, "the weighted mean is beyond its limits")));
+    all.extend(sums.signals.iter().copied().map(named(ChartRule::Cusum, "the cumulative sum is beyond its limit")));
     all.sort_by_key(|signal| signal.session);
     let first = values.len() - request.last.unwrap_or(values.len()).min(values.len());
     let all = all.into_iter().filter(|signal| signal.session >= first);
@@ -115,15 +115,12 @@ pub fn chart(
 }
 
 fn single_values(values: &[f64], control: Control, rules: RuleSet) -> Vec<ChartSignal> {
-    let (name, rules) = match rules {
-        RuleSet::Nelson => ("nelson", Rule::NELSON.as_slice()),
-        RuleSet::WesternElectric => ("western-electric", Rule::WESTERN_ELECTRIC.as_slice()),
+    let (named, rules): (fn(usize) -> ChartRule, _) = match rules {
+        RuleSet::Nelson => (ChartRule::Nelson, Rule::NELSON.as_slice()),
+        RuleSet::WesternElectric => (ChartRule::WesternElectric, Rule::WESTERN_ELECTRIC.as_slice()),
     };
     let number = |rule: Rule| 1 + rules.iter().position(|other| *other == rule).unwrap_or_default();
-    let signal = |(session, rule): (usize, Rule)| ChartSignal {
-        session,
-        rule: format!("{name}-{}", number(rule)),
-        words: rule.words(),
-    };
+    let signal =
+        |(session, rule): (usize, Rule)| ChartSignal { session, rule: named(number(rule)), words: rule.words() };
     control.signals(values, rules).into_iter().map(signal).collect()
 }

@@ -10,6 +10,7 @@ use crate::error::{Error, Place};
 use crate::experiment::Session;
 use crate::record::RecordOverview;
 use crate::reduced::{MountingFindings, Reduced, ReducedPlateau};
+use crate::units::rpm;
 
 /// A measured speed farther than this from the one that was set, relative, is in another unit. The record bears out the
 /// schedule better than that, or its plateaus would not be found.
@@ -60,7 +61,6 @@ fn refuse_other_units(session: &Session, speeds: &[Option<MeasuredSpeed>]) -> Re
     };
     let of_mounting = session.mountings.get(set.mounting);
     let file = of_mounting.and_then(|m| m.pulses.as_deref().or(m.telemetry.as_deref())).unwrap_or(&session.file);
-    let rpm = |speed: f64| speed * 60.0 / std::f64::consts::TAU;
     let found = format!("{:.2} rpm", rpm(speed.speed));
     let expected = format!(
         "about {:.2} rpm, the speed that is set (speed_unit in [columns], pulses_per_revolution in [centrifuge])",
