@@ -26,5 +26,5 @@ pub(crate) use self::interpolated::interpolated;
 pub(crate) use self::noise::Shown;
 pub(crate) use self::not_used::{has_rounded_times, not_used};
 pub(crate) use self::reading_error::{ReadingError, compensated, reading_errors};
-pub(crate) use self::symbol::{newtonometer, symbol};
+pub(crate) use self::symbol::{ParameterName, newtonometer, symbol};
 pub use self::unscheduled::unscheduled;

@@ -3,7 +3,9 @@
 use centrical_session::{Address, CalibrationResult, Contact, Laboratory};
 
 use super::xml::Xml;
-use crate::document::{Issuer, counts_as_exact, drift_facts, objection, presuppositions, rule, switch_on_sentence};
+use crate::document::{
+    Issuer, counts_as_exact, drift_facts, objection, presuppositions, rule, serial, switch_on_sentence,
+};
 use crate::evaluation::UnitVerdict;
 use crate::language::Language;
 
@@ -57,8 +59,7 @@ fn core_data(xml: &mut Xml, laboratory: &Laboratory, language: Language) {
 fn items(xml: &mut Xml, result: &CalibrationResult, laboratory: &Laboratory, language: Language) {
     let (messages, item, session) = (language.messages(), &laboratory.item, &result.session);
     let name = item.description.as_deref().unwrap_or(&session.unit_model);
-    let serial = if session.unit_serial.is_empty() { messages.not_given } else { &session.unit_serial };
-    let mut identifications = vec![("manufacturer", serial)];
+    let mut identifications = vec![("manufacturer", serial(session, language))];
     identifications.extend(item.customer_number.as_deref().map(|number| ("customer", number)));
     xml.element("dcc:items", |xml| {
         xml.element("dcc:item", |xml| {

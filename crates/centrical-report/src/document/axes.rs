@@ -3,6 +3,7 @@
 use centrical_session::{AxesParameter, AxesSummary, CalibrationResult};
 
 use super::content::{Align, Block, Table};
+use super::tables::{axis_titles, coverage};
 use crate::evaluation::{expanded_of, symbol};
 use crate::language::Language;
 
@@ -39,20 +40,17 @@ fn parameters(axes: &AxesSummary, language: Language) -> Table {
 
 fn row(parameter: &AxesParameter, language: Language) -> Vec<String> {
     let expanded = expanded_of(parameter.standard_uncertainty, parameter.degrees_of_freedom);
-    let k = language.fixed(expanded.factor, 2);
-    let degrees = expanded.degrees_of_freedom.map(|nu| format!("{k} ({})", language.fixed(nu, 0)));
     vec![
         symbol(&parameter.name),
         language.plus_minus_scientific(parameter.value, expanded.uncertainty),
-        degrees.unwrap_or(k),
+        coverage(&expanded, language),
         language.unit(&parameter.unit),
     ]
 }
 
 /// The rotation by its rows.
 fn matrix(axes: &AxesSummary, language: Language) -> Table {
-    let messages = language.messages();
-    let titles = [1, 2, 3].map(|axis| format!("{} {axis}", messages.axis));
+    let titles = axis_titles(language);
     let columns = [
         ("", 0.25, Align::Left),
         (&titles[0], 0.25, Align::Right),

@@ -7,14 +7,15 @@ use centrical_session::{
 
 use super::axes::axes;
 use super::conformity::{conformity_table, rule};
-use super::content::{Align, Block, Document, Margins, Opening, Picture, Row, Section, Table};
+use super::content::{Align, Block, Document, Margins, Opening, Picture, Section, Table};
 use super::drift::drift;
 use super::objection::objection;
 use super::reading_error::{error_note, error_table};
 use super::rests_on::{counts_as_exact, presuppositions};
+use super::serial::serial;
 use super::switch_on::switch_on;
 use super::symbols::nominal_output;
-use super::tables::{cells, of_arm};
+use super::tables::{of_arm, rows_by_group};
 use crate::evaluation::{UnitStatement, by_group, equations, expanded, symbol};
 use crate::language::Language;
 
@@ -126,11 +127,10 @@ fn address(address: &Address, contact: &Contact) -> String {
 fn item(result: &CalibrationResult, laboratory: &Laboratory, language: Language) -> Vec<Block> {
     let (messages, item, session) = (language.messages(), &laboratory.item, &result.session);
     let text = |value: &Option<String>| value.clone().unwrap_or_default();
-    let serial = if session.unit_serial.is_empty() { messages.not_given } else { &session.unit_serial };
     let facts = Block::facts([
         (messages.description, text(&item.description)),
         (messages.model, session.unit_model.clone()),
-        (messages.serial, serial.to_owned()),
+        (messages.serial, serial(session, language).to_owned()),
         (messages.manufacturer, text(&item.manufacturer)),
         (messages.customer_number, text(&item.customer_number)),
         (messages.condition, text(&item.condition)),
@@ -240,15 +240,8 @@ fn results(result: &CalibrationResult, language: Language) -> Vec<Block> {
         (messages.value_si, 0.3, Align::Right),
         ("", 0.1, Align::Left),
     ];
-    let mut table = Table::numbers(columns, []);
-    let mut group = None;
-    for parameter in by_group(&terms) {
-        if group != Some(parameter.group) {
-            group = Some(parameter.group);
-            table.rows.push(Row::Group((messages.words.group)(parameter.group).to_owned()));
-        }
-        table.rows.push(Row::Cells(cells(result, parameter, language)));
-    }
+    let rows = rows_by_group(result, &by_group(&terms), language);
+    let table = Table { rows, ..Table::numbers(columns, []) };
     let mut blocks = vec![Block::heading(messages.results, 14), Block::paragraph(messages.results_model)];
     blocks.extend(equations(result).map(Block::Paragraph));
     blocks.push(Block::Table(table));
@@ -287,7 +280,7 @@ fn adjustment(
 /// The day of the calibration before an adjustment, and the objections to it.
 fn calibration_before(before: &CalibrationResult, language: Language) -> String {
     let messages = language.messages();
-    let day = before.session.date.parse().map_or_else(|_| before.session.date.clone(), |day| language.date(day));
+    let day = language.written_date(&before.session.date);
     let reasons: Vec<String> = before.objections().iter().map(|reason| objection(reason, language)).collect();
     let verdict = if reasons.is_empty() {
         String::new()

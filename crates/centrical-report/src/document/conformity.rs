@@ -73,7 +73,7 @@ fn shown(judged: &Judged, language: Language) -> Shown {
     let name = match &limit.of {
         Limited::Parameter(name) => symbol(name),
         Limited::CompensatedReading(axis) => {
-            let place = judged.plateau.as_ref().map(|at| format!(" ({} {at})", messages.at_plateau));
+            let place = judged.plateau.as_ref().map(|at| format!(" ({} {at})", messages.plateau));
             format!("{} {axis}{}", messages.compensated_reading, place.unwrap_or_default())
         }
     };

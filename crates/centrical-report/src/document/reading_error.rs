@@ -4,6 +4,7 @@ use centrical_session::{CalibrationResult, MICRO_G};
 use nalgebra::Vector3;
 
 use super::content::{Align, Row, Table};
+use super::tables::axis_titles;
 use crate::evaluation::{ReadingError, expanded_of_normal, reading_errors};
 use crate::language::Language;
 
@@ -42,7 +43,7 @@ pub(super) fn error_note(result: &CalibrationResult, language: Language) -> &'st
 
 fn table(rows: Vec<Row>, language: Language) -> Table {
     let messages = language.messages();
-    let [axis_1, axis_2, axis_3] = [1, 2, 3].map(|axis| format!("{} {axis}", messages.axis));
+    let [axis_1, axis_2, axis_3] = axis_titles(language);
     let columns = [
         ("", 0.43, Align::Left),
         (messages.unit, 0.12, Align::Left),

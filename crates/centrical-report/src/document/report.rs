@@ -9,6 +9,7 @@ use super::drift::drift;
 use super::objection::{objection, pattern, rival};
 use super::reading_error::{error_note, error_table, headline_table};
 use super::rests_on::{all_rests_on, rests_on};
+use super::serial::serial;
 use super::switch_on::switch_on;
 use super::symbols::{nominal_output, symbols};
 use super::tables::{budget, of_arm, parameters};
@@ -27,7 +28,6 @@ pub fn report(
     language: Language,
 ) -> Document {
     let (messages, session, program) = (language.messages(), &result.session, &result.program);
-    let serial = if session.unit_serial.is_empty() { messages.not_given } else { &session.unit_serial };
     let title = format!("{}: {}", messages.calibration_report, session.unit_model);
     let (drawn, rest): (Vec<_>, Vec<_>) = figures.into_iter().partition(is_of_first_layer);
     let first = [
@@ -59,7 +59,7 @@ pub fn report(
         opening: Opening {
             kind: messages.calibration_report.to_owned(),
             title: session.unit_model.clone(),
-            lines: vec![format!("{} {serial}", messages.serial), session.title.clone()],
+            lines: vec![format!("{} {}", messages.serial, serial(session, language)), session.title.clone()],
             date: language.written_date(&session.date),
             picture: None,
         },

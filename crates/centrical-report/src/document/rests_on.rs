@@ -49,7 +49,7 @@ pub(crate) fn counts_as_exact(result: &CalibrationResult, language: Language) ->
 fn presupposed(result: &CalibrationResult, language: Language) -> String {
     let messages = language.messages();
     let presupposed = if result.model.has_arm() { messages.presupposed } else { messages.presupposed_of_rests };
-    let size = |size: f64| format!("{} {}", language.significant(size / MICRO_G, 2), language.unit("ug"));
+    let size = |size: f64| micro_g(size, language);
     let mut sentences = vec![presupposed.to_owned()];
     if let Some(between) = &result.between_rests {
         sentences.push((messages.words.between_rests)(&size(between.scatter), &size(between.drift)));
@@ -87,8 +87,7 @@ fn table(result: &CalibrationResult, rows: usize, language: Language) -> Table {
     let row = |effect: &RestsOn| {
         let shift = language.significant(effect.standard_uncertainties, 2);
         let moved = format!("{}: {shift}\u{a0}u", symbol(&effect.parameter));
-        let reading = format!("{} {}", language.significant(effect.reading / MICRO_G, 2), language.unit("ug"));
-        vec![cause(&effect.name, language), size(effect, language), moved, reading]
+        vec![cause(&effect.name, language), size(effect, language), moved, micro_g(effect.reading, language)]
     };
     Table::numbers(columns, result.rests_on.iter().take(rows).map(row))
 }
@@ -101,15 +100,18 @@ pub(crate) fn rests_on_sentence(effect: &RestsOn, language: Language) -> String 
         None => messages.would_never_show.to_owned(),
     };
     let uncertainties = language.significant(effect.standard_uncertainties, 2);
-    let reading = language.significant(effect.reading / MICRO_G, 2);
     format!(
-        "{}: {unseen} {} {} {uncertainties} {} {reading} {}",
+        "{}: {unseen} {} {} {uncertainties} {} {}",
         cause(&effect.name, language),
         symbol(&effect.parameter),
         messages.by,
         messages.uncertainties_and_reading,
-        language.unit("ug")
+        micro_g(effect.reading, language)
     )
+}
+
+fn micro_g(acceleration: f64, language: Language) -> String {
+    format!("{} {}", language.significant(acceleration / MICRO_G, 2), language.unit("ug"))
 }
 
 fn size(effect: &RestsOn, language: Language) -> String {

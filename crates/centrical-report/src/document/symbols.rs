@@ -4,6 +4,7 @@ use centrical::Group;
 use centrical_session::{CalibrationResult, OutputSummary};
 
 use super::content::{Align, Block, Fact, Table};
+use super::tables::axis_titles;
 use crate::evaluation::symbol;
 use crate::language::Language;
 
@@ -33,7 +34,7 @@ pub(super) fn nominal_output(result: &CalibrationResult, language: Language) -> 
     };
     let per_force = format!("{unit}/({})", language.unit("m/s^2"));
     let rows = [row(messages.nominal_scale, scale, per_force), row(messages.nominal_bias, bias, unit)];
-    let axes = [1, 2, 3].map(|axis| format!("{} {axis}", messages.axis));
+    let axes = axis_titles(language);
     let columns = [
         ("", 0.26, Align::Left),
         (messages.unit, 0.2, Align::Left),

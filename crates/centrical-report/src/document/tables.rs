@@ -3,7 +3,7 @@
 use centrical_session::{BudgetSource, CalibrationResult, ModelSummary, ParameterEstimate, customary};
 
 use super::content::{Align, Column, Row, Table, TableKind};
-use crate::evaluation::{expanded, symbol};
+use crate::evaluation::{Expanded, expanded, symbol};
 use crate::language::Language;
 
 /// What a source leaves is not shown below this part of the combined uncertainty.
@@ -25,32 +25,41 @@ pub(super) fn parameters(result: &CalibrationResult, shown: &[&ParameterEstimate
         (messages.value_si, 0.26, Align::Right),
         (messages.unit, 0.1, Align::Left),
     ];
-    let mut table = Table { kind: TableKind::Parameters, ..Table::numbers(columns, []) };
-    let mut group = None;
-    for parameter in shown {
-        if group != Some(parameter.group) {
-            group = Some(parameter.group);
-            table.rows.push(Row::Group((messages.words.group)(parameter.group).to_owned()));
-        }
-        table.rows.push(Row::Cells(cells(result, parameter, language)));
-    }
-    table
+    let rows = rows_by_group(result, shown, language);
+    Table { kind: TableKind::Parameters, rows, ..Table::numbers(columns, []) }
 }
 
-/// Symbol, value and unit in the customary unit, coverage factor, the same in SI. Effective degrees of freedom stand beside
-/// the coverage factor where they are finite.
-pub(super) fn cells(result: &CalibrationResult, parameter: &ParameterEstimate, language: Language) -> Vec<String> {
+/// A row for each parameter, those of a group below its name.
+pub(super) fn rows_by_group(result: &CalibrationResult, shown: &[&ParameterEstimate], language: Language) -> Vec<Row> {
+    let in_group = |of: &[&ParameterEstimate]| {
+        let rows = of.iter().map(|parameter| Row::Cells(cells(result, parameter, language)));
+        let name = (language.messages().words.group)(of[0].group);
+        std::iter::once(Row::Group(name.to_owned())).chain(rows).collect::<Vec<_>>()
+    };
+    shown.chunk_by(|a, b| a.group == b.group).flat_map(in_group).collect()
+}
+
+/// `axis 1`, `axis 2`, `axis 3`.
+pub(super) fn axis_titles(language: Language) -> [String; 3] {
+    [1, 2, 3].map(|axis| format!("{} {axis}", language.messages().axis))
+}
+
+/// The coverage factor, beside it the effective degrees of freedom where they are finite.
+pub(super) fn coverage(expanded: &Expanded, language: Language) -> String {
+    let k = language.fixed(expanded.factor, 2);
+    let degrees = expanded.degrees_of_freedom.map(|nu| format!("{k} ({})", language.fixed(nu, 0)));
+    degrees.unwrap_or(k)
+}
+
+/// Symbol, value and unit in the customary unit, coverage factor, the same in SI.
+fn cells(result: &CalibrationResult, parameter: &ParameterEstimate, language: Language) -> Vec<String> {
     let (factor, unit) = customary(&parameter.unit, parameter.group);
     let [shown, k, si] = match (parameter.value, expanded(result, parameter)) {
-        (Some(value), Some(expanded)) => {
-            let k = language.fixed(expanded.factor, 2);
-            let degrees = expanded.degrees_of_freedom.map(|nu| format!("{k} ({})", language.fixed(nu, 0)));
-            [
-                language.plus_minus(value * factor, expanded.uncertainty * factor),
-                degrees.unwrap_or(k),
-                language.plus_minus_scientific(value, expanded.uncertainty),
-            ]
-        }
+        (Some(value), Some(expanded)) => [
+            language.plus_minus(value * factor, expanded.uncertainty * factor),
+            coverage(&expanded, language),
+            language.plus_minus_scientific(value, expanded.uncertainty),
+        ],
         _ => [language.messages().not_determined.to_owned(), String::new(), String::new()],
     };
     vec![symbol(&parameter.name), shown, language.unit(unit), k, si, language.unit(&parameter.unit)]

@@ -5,16 +5,30 @@ use super::typeset::{lowered, typeset};
 /// Stems that print writes in Greek.
 const GREEK: [(&str, &str); 3] = [("alpha", "α"), ("delta", "δ"), ("drho", "dρ")];
 
+/// The parts of a parameter's name: `delta`, `2` and `[4]` of `delta_2[4]`; all of `radius_scale` is its stem.
+pub(crate) struct ParameterName<'n> {
+    pub stem: &'n str,
+    /// Digits behind the stem.
+    pub index: &'n str,
+    /// The position or pair of positions in brackets.
+    pub place: &'n str,
+}
+
+impl<'n> ParameterName<'n> {
+    /// Takes a name apart.
+    pub fn of(name: &'n str) -> Self {
+        let (name, place) = name.split_at(name.find('[').unwrap_or(name.len()));
+        let is_index = |index: &str| !index.is_empty() && index.bytes().all(|b| b.is_ascii_digit());
+        let (stem, index) = name.rsplit_once('_').filter(|(_, index)| is_index(index)).unwrap_or((name, ""));
+        Self { stem, index, place }
+    }
+}
+
 /// A name of a result as print has it: `G0_21` with a lowered 21, `delta_1[6]` with a delta; a name without numbers as it is.
 pub(crate) fn symbol(name: &str) -> String {
-    let (name, place) = name.split_at(name.find('[').unwrap_or(name.len()));
-    let place = typeset(place);
-    let Some((stem, index)) = name.rsplit_once('_') else { return format!("{name}{place}") };
-    if index.is_empty() || !index.bytes().all(|b| b.is_ascii_digit()) {
-        return format!("{name}{place}");
-    }
-    let stem = GREEK.iter().find(|(latin, _)| *latin == stem).map_or(stem, |(_, greek)| greek);
-    format!("{stem}{}{place}", lowered(index))
+    let ParameterName { stem, index, place } = ParameterName::of(name);
+    let greek = GREEK.iter().find(|(latin, _)| *latin == stem && !index.is_empty());
+    format!("{}{}{}", greek.map_or(stem, |(_, greek)| greek), lowered(index), typeset(place))
 }
 
 /// The reading of a newtonometer as print has it: `f` with a lowered number.

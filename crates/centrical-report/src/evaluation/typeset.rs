@@ -1,13 +1,14 @@
 //! Formulas as print has them: raised powers, lowered indices, a centred point.
 
+use crate::number::raised;
+
 /// A formula of sessions as print has it: `f1^2*f3` with a raised 2, lowered 1 and 3 and a point between.
 pub(crate) fn typeset(formula: &str) -> String {
-    const RAISED: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
     let mut after = ' ';
     let mut text = String::with_capacity(formula.len());
     for symbol in formula.chars() {
         match (symbol.to_digit(10), after) {
-            (Some(digit), '^') => text.push(RAISED[digit as usize]),
+            (Some(_), '^') => text.push(raised(symbol)),
             (Some(_), 'f') => text.push_str(&lowered(symbol.encode_utf8(&mut [0; 4]))),
             _ => match symbol {
                 '^' => {}

@@ -287,7 +287,6 @@ pub(crate) const ENGLISH: Messages = Messages {
     nominal_scale: "Nominal scale S",
     nominal_bias: "Nominal bias b",
     compensated_reading: "compensated reading, axis",
-    at_plateau: "plateau",
     signed_on: "date",
     mark_place: "place for mark or seal",
     words: Words {

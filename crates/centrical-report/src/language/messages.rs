@@ -247,7 +247,6 @@ pub(crate) struct Messages {
     pub nominal_scale: &'static str,
     pub nominal_bias: &'static str,
     pub compensated_reading: &'static str,
-    pub at_plateau: &'static str,
     pub signed_on: &'static str,
     pub mark_place: &'static str,
     /// Words for what is one of several.

@@ -284,7 +284,6 @@ pub(crate) const RUSSIAN: Messages = Messages {
     nominal_scale: "Номинальный масштаб S",
     nominal_bias: "Номинальное смещение b",
     compensated_reading: "скомпенсированное показание, ось",
-    at_plateau: "площадка",
     signed_on: "дата",
     mark_place: "место печати",
     words: Words {

@@ -14,10 +14,10 @@ use super::rests::rests;
 use super::rests_on::rests_on_text;
 use super::rivals::changes_for;
 use super::screen::{Emphasis, Screen};
-use super::symbols::{Symbol, legend};
+use super::symbols::legend;
 use super::table::{Align, Cell, Table};
 use crate::document::{objection, rival};
-use crate::evaluation::{combination, monomial};
+use crate::evaluation::{ParameterName, combination, monomial};
 use crate::language::Language;
 use crate::number::{counted, with_uncertainty};
 
@@ -139,7 +139,7 @@ fn mounting(screen: &mut Screen, result: &CalibrationResult) {
 
 /// `delta_2[4]` is axis 1 of the row `delta[4]`; `drho_33` axis 2 of `drho`.
 fn label_and_axis(name: &str) -> Option<(String, usize)> {
-    let Symbol { stem, index, place } = Symbol::of(name);
+    let ParameterName { stem, index, place } = ParameterName::of(name);
     let axis = match index.as_bytes().first()? {
         b'1' => 0,
         b'2' => 1,

@@ -3,33 +3,15 @@
 use centrical::Group;
 
 use super::screen::Screen;
+use crate::evaluation::ParameterName;
 use crate::language::Language;
-
-/// The parts of a parameter's name: `delta`, `2` and `[4]` of `delta_2[4]`; all of `radius_scale` is its stem.
-pub(super) struct Symbol<'n> {
-    pub stem: &'n str,
-    /// Digits behind the stem.
-    pub index: &'n str,
-    /// The position or pair of positions in brackets.
-    pub place: &'n str,
-}
-
-impl<'n> Symbol<'n> {
-    /// Takes a name apart.
-    pub fn of(name: &'n str) -> Self {
-        let (name, place) = name.split_at(name.find('[').unwrap_or(name.len()));
-        let is_index = |index: &str| !index.is_empty() && index.bytes().all(|b| b.is_ascii_digit());
-        let (stem, index) = name.rsplit_once('_').filter(|(_, index)| is_index(index)).unwrap_or((name, ""));
-        Self { stem, index, place }
-    }
-}
 
 /// What the names in a table mean, each stem once: `alpha: tilt of the rotation axis`.
 pub(super) fn legend<'p>(screen: &mut Screen, parameters: impl Iterator<Item = (&'p str, Group)>) {
     let mut stems: Vec<(&str, Vec<Group>)> = Vec::new();
     let (mut has_position, mut has_pair) = (false, false);
     for (name, group) in parameters {
-        let Symbol { stem, place, .. } = Symbol::of(name);
+        let ParameterName { stem, place, .. } = ParameterName::of(name);
         has_position |= group == Group::Turn && !place.is_empty();
         has_pair |= group == Group::Shift && !place.is_empty();
         match stems.iter_mut().find(|(known, _)| *known == stem) {
