@@ -7,7 +7,7 @@ use centrical_session::{Agreement, HistoryEntry, LivePlateau, LiveReport, LiveSt
 use crate::document::rival;
 use crate::evaluation::expanded_of_normal;
 use crate::figure::{Figure, live_readings_figure, live_speeds_figure, live_uncertainties_figure};
-use crate::language::{Language, LiveMessages};
+use crate::language::{Language, LiveMessages, Messages};
 use crate::number::two_digits;
 use crate::plot::Escaped;
 
@@ -62,7 +62,7 @@ pub(super) fn languages(language: Language) -> &'static str {
 
 /// The panel: everything that changes.
 pub fn live_panel(live: &LiveReport, history: &[HistoryEntry], now: f64, language: Language) -> String {
-    let panel = Panel { live, language, words: language.live() };
+    let panel = Panel { live, language, words: language.live(), messages: language.messages() };
     let mut out = String::new();
     out.push_str("<div class=\"banners\">\n");
     // Writing to a String cannot fail.
@@ -97,6 +97,7 @@ struct Panel<'a> {
     live: &'a LiveReport,
     language: Language,
     words: &'static LiveMessages,
+    messages: &'static Messages,
 }
 
 impl Panel<'_> {
@@ -159,9 +160,9 @@ impl Panel<'_> {
             out,
             "<p class=\"big\"><span id=\"arrived\" data-value=\"{arrived}\">{arrived}</span> {} {all}</p>\
              <progress max=\"{all}\" value=\"{arrived}\" aria-label=\"{}\"></progress><dl>",
-            words.of, words.plateaus
+            self.messages.of, words.plateaus
         )?;
-        fact(out, words.mounting, &format!("{} {} {}", live.mounting, words.of, live.mountings))?;
+        fact(out, words.mounting, &format!("{} {} {}", live.mounting, self.messages.of, live.mountings))?;
         let ends = match live.ends {
             _ if live.next.is_none() && arrived > 0 => None,
             Some(ends) => Some(format!("<time data-seconds=\"{ends:.0}\">{}</time>", clock(ends))),
@@ -225,7 +226,7 @@ impl Panel<'_> {
             )?;
         }
         out.push_str("<dl>");
-        fact(out, words.file, &Escaped(name).to_string())?;
+        fact(out, self.messages.file, &Escaped(name).to_string())?;
         fact(out, words.samples, &format!("<span id=\"samples\" data-value=\"{0}\">{0}</span>", record.samples))?;
         match record.clock_offset {
             Some((offset, uncertainty)) => {
@@ -255,7 +256,7 @@ impl Panel<'_> {
             "<div class=\"scroll\"><table><thead><tr><th scope=\"col\">{}</th><th scope=\"col\">{}</th>\
              <th scope=\"col\" class=\"number\">{}</th><th scope=\"col\" class=\"number\">{}</th>\
              <th scope=\"col\" class=\"number\">{}</th><th scope=\"col\" class=\"number\">{}</th></tr></thead><tbody>",
-            words.group, words.unit, words.determined, words.largest, words.target, words.with_next
+            words.group, self.messages.unit, words.determined, words.largest, words.target, words.with_next
         )?;
         let shown = |u: Option<f64>| u.map_or("—".to_owned(), |u| self.language.number(&two_digits(u)));
         let raw = |u: Option<f64>| u.map_or(String::new(), |u| u.to_string());
@@ -270,10 +271,10 @@ impl Panel<'_> {
                 "<tr data-group=\"{}\"><th scope=\"row\">{}</th><td>{}</td><td class=\"number\">{} {} {}</td>\
                  <td class=\"number\" data-value=\"{}\">{}</td><td class=\"number\">{target}</td><td class=\"number\">{}</td></tr>",
                 Escaped(row.group.name()),
-                (self.language.messages().words.group)(row.group),
+                (self.messages.words.group)(row.group),
                 Escaped(&self.language.unit(&row.unit)),
                 row.determined,
-                words.of,
+                self.messages.of,
                 row.unknowns,
                 raw(row.largest),
                 shown(row.largest),
@@ -286,12 +287,12 @@ impl Panel<'_> {
 
     fn rank(&self, out: &mut String) -> std::fmt::Result {
         let (live, words) = (self.live, self.words);
-        open(out, "rank", words.rank)?;
+        open(out, "rank", self.messages.rank)?;
         let (rank, all) = (live.rank, live.unknowns);
         write!(
             out,
             "<p class=\"big\"><span id=\"rank-now\" data-value=\"{rank}\">{rank}</span> {} {all}</p>",
-            words.of
+            self.messages.of
         )?;
         if all > 0 && rank == all {
             write!(out, "<p class=\"good\">{}</p>", words.all_determined)?;

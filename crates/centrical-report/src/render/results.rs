@@ -24,7 +24,7 @@ pub struct ListedResult {
 
 /// The list of results. The page of a result is `/report/ID`, of two compared `/compare?first=ID&second=ID`.
 pub fn results_page(title: &str, results: &[ListedResult], has_live: bool, language: Language) -> String {
-    let words = language.live();
+    let (words, messages) = (language.live(), language.messages());
     let mut body = format!(
         "<header><p class=\"kind\">{}</p><h1>{}</h1><nav class=\"languages\">{}</nav></header>\n",
         words.results,
@@ -40,7 +40,7 @@ pub fn results_page(title: &str, results: &[ListedResult], has_live: bool, langu
         "<form action=\"/compare\"><input type=\"hidden\" name=\"lang\" value=\"{code}\"><div class=\"scroll\"><table id=\"list\">\
          <thead><tr><th scope=\"col\">{}</th><th scope=\"col\">{}</th><th scope=\"col\">{}</th><th scope=\"col\">{}</th>\
          <th scope=\"col\">{}</th><th scope=\"col\">{}</th></tr></thead><tbody>",
-        words.compare, words.date, words.model, words.serial, words.verdict, words.file
+        words.compare, messages.date, words.model, words.serial, words.verdict, messages.file
     );
     for listed in results {
         let _ = row(&mut body, listed, language);
