@@ -17,11 +17,8 @@ pub mod plot;
 mod render;
 mod terminal;
 
-pub use document::{
-    Align, Attachment, Block, Column, Document, Layer, Margins, Opening, Row, Section, Table, TableKind, Tone,
-    certificate, objection, report,
-};
-pub use evaluation::{Judged, UnitStatement, UnitVerdict, unscheduled};
+pub use document::{Block, Document, Row, certificate, objection, report};
+pub use evaluation::{UnitStatement, unscheduled};
 pub use figure::{Figure, chart_plots, comparison_plot, figures, frontier_plot, positions_figure, unit_history_plots};
 pub use files::{
     DocumentRequest, Documents, PagesRequest, StorePages, document_files, read_issuer, write_all_documents,
