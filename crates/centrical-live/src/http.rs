@@ -8,12 +8,11 @@ mod response;
 
 use std::convert::Infallible;
 use std::net::TcpListener;
-use std::path::Path;
 use std::sync::Arc;
 use std::thread;
 use std::time::Duration;
 
-use centrical_session::{Error, Place};
+use centrical_session::Error;
 use hyper::body::Incoming;
 use hyper::server::conn::http1;
 use hyper::service::service_fn;
@@ -180,6 +179,5 @@ async fn accept<S: Site>(listener: tokio::net::TcpListener, host: Arc<Host<S>>) 
 }
 
 fn failed(address: &str, error: &std::io::Error) -> Error {
-    let place = format!("--serve {address}");
-    Error::content(Path::new(&place), Place::Whole, error.to_string(), "an address of this machine")
+    address::refused(address, &error.to_string(), "an address of this machine")
 }

@@ -23,7 +23,7 @@ pub type Body = UnsyncBoxBody<Bytes, Infallible>;
 const POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; connect-src 'self'; img-src 'self' data:; \
                       form-action 'self'; base-uri 'none'; frame-ancestors 'none'";
 
-/// Of a report, which is one file with its script in it.
+/// Of a report or a page of a store, which is one file with its style and any script in it.
 const POLICY_OF_DOCUMENT: &str = "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data:; \
                                   form-action 'none'; base-uri 'none'; frame-ancestors 'none'";
 

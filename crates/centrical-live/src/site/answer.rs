@@ -1,23 +1,32 @@
 //! What a site is, and what it answers.
 
 use centrical_report::Language;
+use centrical_session::Error;
 
-/// Pages without a server: what a path is answered with.
+/// Pages without a server: what a path is answered with. A site has no panel and no metrics unless it says so.
 pub trait Site: Send + Sync + 'static {
     /// The answer to a path; `None` without such a page.
     fn answer(&self, path: &str, query: &Query) -> Option<Answer>;
 
     /// Whether there is a panel that changes, and events of it.
-    fn has_panel(&self) -> bool;
+    fn has_panel(&self) -> bool {
+        false
+    }
 
     /// A number that changes with the files that the panel is made of.
-    fn stamp(&self) -> u64;
+    fn stamp(&self) -> u64 {
+        0
+    }
 
     /// The panel as it is now; `None` while there is nothing to show.
-    fn panel(&self, language: Language) -> Option<String>;
+    fn panel(&self, _: Language) -> Option<String> {
+        None
+    }
 
     /// Metrics in Prometheus' text.
-    fn metrics(&self) -> String;
+    fn metrics(&self) -> String {
+        String::new()
+    }
 }
 
 /// An answer.
@@ -31,6 +40,13 @@ pub enum Answer {
     File(&'static str, String),
     /// What cannot be shown at present, and why.
     Failed(String),
+}
+
+impl From<Result<Self, Error>> for Answer {
+    /// The answer, or what the error says.
+    fn from(answer: Result<Self, Error>) -> Self {
+        answer.unwrap_or_else(|error| Self::Failed(error.to_string()))
+    }
 }
 
 /// The query of a request.

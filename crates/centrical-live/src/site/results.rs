@@ -3,9 +3,7 @@
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::{Path, PathBuf};
 
-use centrical_report::{
-    LIVE_STYLE, Language, ListedResult, compared_page, figures, html, report, results_page, unchosen_page,
-};
+use centrical_report::{Language, ListedResult, compared_page, figures, html, report, results_page, unchosen_page};
 use centrical_session::{CalibrationResult, ComparisonRequest, Error, collect_results, compare_results};
 
 use super::answer::{Answer, Query, Site};
@@ -68,10 +66,9 @@ impl Results {
 
     fn report(&self, id: &str, language: Language) -> Option<Answer> {
         let result = CalibrationResult::read(&self.file(id)?);
-        Some(match result {
-            Ok(result) => Answer::Document(html(&report(&result, None, None, figures(&result, language), language))),
-            Err(error) => Answer::Failed(error.to_string()),
-        })
+        let drawn =
+            |result: CalibrationResult| html(&report(&result, None, None, figures(&result, language), language));
+        Some(result.map(drawn).map(Answer::Document).into())
     }
 
     fn compared(&self, query: &Query) -> Option<Answer> {
@@ -84,10 +81,7 @@ impl Results {
             let named = [(files[0].as_path(), &results[0]), (files[1].as_path(), &results[1])];
             compare_results(&named, ComparisonRequest { years: None, other_units: true })
         };
-        Some(match compared() {
-            Ok(report) => Answer::Page(compared_page(&report, query.language())),
-            Err(error) => Answer::Failed(error.to_string()),
-        })
+        Some(compared().map(|report| Answer::Page(compared_page(&report, query.language()))).into())
     }
 }
 
@@ -101,11 +95,7 @@ fn id(file: &Path) -> String {
 impl Site for Results {
     fn answer(&self, path: &str, query: &Query) -> Option<Answer> {
         match path {
-            "/" => Some(match self.list(query.language()) {
-                Ok(page) => Answer::Page(page),
-                Err(error) => Answer::Failed(error.to_string()),
-            }),
-            "/live.css" => Some(Answer::File("text/css; charset=utf-8", LIVE_STYLE.to_owned())),
+            "/" => Some(self.list(query.language()).map(Answer::Page).into()),
             "/compare" => self.compared(query),
             "/live" => self.watched.answer("/", query),
             path => match path.strip_prefix("/report/") {

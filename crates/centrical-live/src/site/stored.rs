@@ -4,7 +4,7 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
-use centrical_report::{Language, PagesRequest, StorePages};
+use centrical_report::{PagesRequest, StorePages};
 use centrical_session::{Error, Store};
 
 use super::answer::{Answer, Query, Site};
@@ -42,6 +42,14 @@ impl Stored {
         *made = Some((stamp, Arc::clone(&pages)));
         Ok(pages)
     }
+
+    /// A number that changes with the parts of the store: a part never changes under its name.
+    fn stamp(&self) -> u64 {
+        let mut hasher = DefaultHasher::new();
+        let parts: Vec<PathBuf> = self.store.parts().unwrap_or_default();
+        parts.hash(&mut hasher);
+        hasher.finish()
+    }
 }
 
 impl Site for Stored {
@@ -50,29 +58,7 @@ impl Site for Stored {
             "" => "index.html",
             file => file,
         };
-        match self.pages().and_then(|pages| pages.page(file)) {
-            Ok(page) => page.map(Answer::Document),
-            Err(error) => Some(Answer::Failed(error.to_string())),
-        }
-    }
-
-    fn has_panel(&self) -> bool {
-        false
-    }
-
-    /// A part never changes under its name.
-    fn stamp(&self) -> u64 {
-        let mut hasher = DefaultHasher::new();
-        let parts: Vec<PathBuf> = self.store.parts().unwrap_or_default();
-        parts.hash(&mut hasher);
-        hasher.finish()
-    }
-
-    fn panel(&self, _: Language) -> Option<String> {
-        None
-    }
-
-    fn metrics(&self) -> String {
-        String::new()
+        let page = self.pages().and_then(|pages| pages.page(file)).transpose()?;
+        Some(page.map(Answer::Document).into())
     }
 }

@@ -64,13 +64,10 @@ impl Site for Watched {
     fn answer(&self, path: &str, query: &Query) -> Option<Answer> {
         let language = query.language();
         match path {
-            "/" => Some(page(self.with(|live, history, now| live_page(live, history, now, language)))),
+            "/" => Some(self.with(|live, history, now| Answer::Page(live_page(live, history, now, language))).into()),
             "/live.css" => Some(Answer::File("text/css; charset=utf-8", LIVE_STYLE.to_owned())),
             "/live.js" => Some(Answer::File("text/javascript; charset=utf-8", LIVE_SCRIPT.to_owned())),
-            "/state.json" => Some(match self.state() {
-                Ok(state) => Answer::File("application/json", state),
-                Err(error) => Answer::Failed(error.to_string()),
-            }),
+            "/state.json" => Some(self.state().map(|state| Answer::File("application/json", state)).into()),
             _ => None,
         }
     }
@@ -90,13 +87,6 @@ impl Site for Watched {
 
     fn metrics(&self) -> String {
         LiveReport::read(&self.live).map_or_else(|_| up(false), |live| metrics(&live, now()))
-    }
-}
-
-fn page(page: Result<String, Error>) -> Answer {
-    match page {
-        Ok(page) => Answer::Page(page),
-        Err(error) => Answer::Failed(error.to_string()),
     }
 }
 
