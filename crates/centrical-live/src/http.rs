@@ -140,9 +140,9 @@ impl<S: Site> Host<S> {
             "/metrics" => with_metrics(&self.metrics.text(self.site.metrics()), is_head),
             path => {
                 // A report takes some ten milliseconds: the events of others go on.
-                let (site, path) = (Arc::clone(&self.site), path.to_owned());
+                let (site, path, language) = (Arc::clone(&self.site), path.to_owned(), query.language());
                 let answer = tokio::task::spawn_blocking(move || site.answer(&path, &query)).await;
-                answered(answer.ok().flatten(), is_head)
+                answered(answer.ok().flatten(), language, is_head)
             }
         }
     }

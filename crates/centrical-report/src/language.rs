@@ -1,5 +1,6 @@
 //! The languages of the documents: how each writes numbers, units and dates.
 
+mod comparison;
 mod english;
 mod english_words;
 mod live;
@@ -10,10 +11,10 @@ mod speeds;
 
 use centrical_session::{Date, Symbol};
 
+pub(crate) use self::comparison::ComparisonMessages;
 use self::english::ENGLISH;
 pub(crate) use self::english_words::next_rest_brings;
 pub(crate) use self::live::LiveMessages;
-use self::live::{IN_ENGLISH, IN_RUSSIAN};
 pub(crate) use self::messages::Messages;
 use self::russian::RUSSIAN;
 use crate::number::{power_of_ten, scientific, shortest, significant, superscript, unsigned_zero, with_uncertainty};
@@ -48,8 +49,16 @@ impl Language {
     /// What the live page says.
     pub(crate) fn live(self) -> &'static LiveMessages {
         match self {
-            Self::English => &IN_ENGLISH,
-            Self::Russian => &IN_RUSSIAN,
+            Self::English => &live::IN_ENGLISH,
+            Self::Russian => &live::IN_RUSSIAN,
+        }
+    }
+
+    /// What a comparison of results says.
+    pub(crate) fn comparison(self) -> &'static ComparisonMessages {
+        match self {
+            Self::English => &comparison::IN_ENGLISH,
+            Self::Russian => &comparison::IN_RUSSIAN,
         }
     }
 
@@ -60,6 +69,16 @@ impl Language {
             Self::English => number,
             Self::Russian => number.replace('.', ","),
         }
+    }
+
+    /// A number of a table for the terminal, as a page in this language has it: in English as on the terminal.
+    pub(crate) fn plain(self, number: String) -> String {
+        if self == Self::English { number } else { self.number(&number) }
+    }
+
+    /// The same of a unit.
+    pub(crate) fn plain_unit(self, unit: &str) -> String {
+        if self == Self::English { unit.to_owned() } else { self.unit(unit) }
     }
 
     /// A number to `places` decimal places.

@@ -27,7 +27,8 @@ pub use files::{
 pub use language::Language;
 pub use number::counted;
 pub use render::{
-    LIVE_SCRIPT, LIVE_STYLE, ListedResult, compared_page, html, live_page, live_panel, pdf, results_page, unchosen_page,
+    LIVE_SCRIPT, LIVE_STYLE, ListedResult, compared_page, html, live_page, live_panel, not_found, pdf, results_page,
+    unchosen_page,
 };
 pub use terminal::{
     AlarmKind, Emphasis, Line, Screen, alarm_text, assessment_text, chart_text, comparison_text, compensation_text,

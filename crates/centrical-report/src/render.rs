@@ -15,4 +15,4 @@ pub use self::history::{
 pub use self::html::html;
 pub use self::live::{LIVE_SCRIPT, LIVE_STYLE, live_page, live_panel};
 pub use self::pdf::pdf;
-pub use self::results::{ListedResult, compared_page, results_page, unchosen_page};
+pub use self::results::{ListedResult, compared_page, not_found, results_page, unchosen_page};

@@ -31,6 +31,7 @@ mod wrap;
 pub use self::alarm::{AlarmKind, alarm_text, frozen_text};
 pub use self::assess::assessment_text;
 pub use self::calibrate::{terminal_table, verdict_text};
+pub(crate) use self::compare::comparison_screen;
 pub use self::compare::comparison_text;
 pub use self::compensate::compensation_text;
 pub use self::history::{

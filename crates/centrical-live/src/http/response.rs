@@ -3,6 +3,7 @@
 use std::convert::Infallible;
 use std::sync::Arc;
 
+use centrical_report::{Language, not_found};
 use http_body_util::combinators::UnsyncBoxBody;
 use http_body_util::{BodyExt, Full, StreamBody};
 use hyper::body::{Bytes, Frame};
@@ -27,8 +28,8 @@ const POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self' 'u
 const POLICY_OF_DOCUMENT: &str = "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data:; \
                                   form-action 'none'; base-uri 'none'; frame-ancestors 'none'";
 
-/// The answer of a site; without one, "not found".
-pub fn answered(answer: Option<Answer>, is_head: bool) -> Response<Body> {
+/// The answer of a site; without one, "not found" in the language that is asked for.
+pub fn answered(answer: Option<Answer>, language: Language, is_head: bool) -> Response<Body> {
     match answer {
         Some(Answer::Page(text)) => whole(begun(StatusCode::OK, POLICY), "text/html; charset=utf-8", text, is_head),
         Some(Answer::Document(text)) => {
@@ -39,7 +40,7 @@ pub fn answered(answer: Option<Answer>, is_head: bool) -> Response<Body> {
             whole(begun(StatusCode::SERVICE_UNAVAILABLE, POLICY), "text/plain; charset=utf-8", text + "\n", is_head)
         }
         None => {
-            let text = "not found\n".to_owned();
+            let text = format!("{}\n", not_found(language));
             whole(begun(StatusCode::NOT_FOUND, POLICY), "text/plain; charset=utf-8", text, is_head)
         }
     }

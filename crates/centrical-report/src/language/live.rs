@@ -89,6 +89,8 @@ pub(crate) struct LiveMessages {
     /// Fewer than two results are chosen.
     pub choose_two: &'static str,
     pub unreadable: &'static str,
+    /// No page has the address.
+    pub not_found: &'static str,
 }
 
 /// In English.
@@ -174,6 +176,7 @@ pub(super) const IN_ENGLISH: LiveMessages = LiveMessages {
     other_units: "The results are of different units.",
     choose_two: "Choose two results to compare.",
     unreadable: "cannot be read",
+    not_found: "not found",
 };
 
 /// In Russian.
@@ -259,6 +262,7 @@ pub(super) const IN_RUSSIAN: LiveMessages = LiveMessages {
     other_units: "Результаты относятся к разным приборам.",
     choose_two: "Выберите два результата для сравнения.",
     unreadable: "не читается",
+    not_found: "не найдено",
 };
 
 /// Why a combination is not determined: what has to vary, and what of the instrument it leaves undetermined.

@@ -6,10 +6,10 @@ use centrical_session::{CalibrationResult, ComparisonReport};
 
 use super::live::{languages, served};
 use super::screen::shown;
-use crate::figure::comparison_plot;
+use crate::figure::comparison_drawing;
 use crate::language::Language;
 use crate::plot::Escaped;
-use crate::terminal::comparison_text;
+use crate::terminal::comparison_screen;
 
 /// A result in the list: where it lies, and what it says or why it cannot be read.
 #[derive(Debug)]
@@ -90,8 +90,9 @@ pub fn compared_page(report: &ComparisonReport, language: Language) -> String {
         (false, false) => ("bad", words.other_units),
     };
     let mut body = compared_header(class, verdict, language);
-    let _ = writeln!(body, "<figure>{}</figure>\n<div lang=\"en\">", comparison_plot(report));
-    shown(&mut body, &comparison_text(report));
+    let _ =
+        writeln!(body, "<figure>{}</figure>\n<div lang=\"{}\">", comparison_drawing(report, language), language.code());
+    shown(&mut body, &comparison_screen(report, language));
     body.push_str("</div>\n");
     served(verdict, &body, false, language)
 }
@@ -100,6 +101,11 @@ pub fn compared_page(report: &ComparisonReport, language: Language) -> String {
 pub fn unchosen_page(language: Language) -> String {
     let words = language.live();
     served(words.choose_two, &compared_header("bad", words.choose_two, language), false, language)
+}
+
+/// What an address without a page is answered with.
+pub fn not_found(language: Language) -> &'static str {
+    language.live().not_found
 }
 
 /// The head of a comparison, with the way back to the list.

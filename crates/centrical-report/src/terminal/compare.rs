@@ -1,122 +1,114 @@
 //! Calibrations compared, as text for the terminal.
 
-use centrical_session::{ComparedResultSummary, ComparisonReport, PairComparison, customary, unit_name};
+use centrical_session::{ComparedResultSummary, ComparisonReport, PairComparison, customary};
 
 use super::chance::chance;
 use super::screen::{Emphasis, Screen};
-use super::symbols::legend;
+use super::symbols::legend_in;
 use super::table::{Align, Cell, Table};
-use crate::number::{counted, unsigned_zero, with_uncertainty};
+use crate::language::{ComparisonMessages, Language};
+use crate::number::{unsigned_zero, with_uncertainty};
 
 /// Calibrations of one unit, two by two.
 pub fn comparison_text(report: &ComparisonReport) -> Screen {
+    comparison_screen(report, Language::English)
+}
+
+/// The same in a language.
+pub(crate) fn comparison_screen(report: &ComparisonReport, language: Language) -> Screen {
+    let messages = language.comparison();
     let mut screen = Screen::default();
-    let (emphasis, mark, words) = if report.agree && report.comparisons.iter().any(|pair| pair.same_files > 0) {
-        let words =
-            "no difference beyond what the uncertainties explain, which two results of the same files show anyway";
-        (Emphasis::Warning, "AGREE", words)
+    let (emphasis, [mark, words]) = if report.agree && report.comparisons.iter().any(|pair| pair.same_files > 0) {
+        (Emphasis::Warning, [messages.agree[0], messages.agree_of_same_files])
     } else if report.agree {
-        (Emphasis::Acceptable, "AGREE", "no difference beyond what the uncertainties explain")
+        (Emphasis::Acceptable, messages.agree)
     } else if report.is_of_one_unit() {
-        (Emphasis::NotAcceptable, "DO NOT AGREE", "the reasons stand below")
+        (Emphasis::NotAcceptable, messages.disagree)
     } else {
-        (Emphasis::NotAcceptable, "OTHER UNITS", "the results are of different units; their differences stand below")
+        (Emphasis::NotAcceptable, messages.other_units)
     };
     screen.marked(emphasis, mark, words);
     screen.gap();
-    screen.head("COMPARISON", "difference ± standard uncertainty; E_n with expanded uncertainties, k = 2");
+    screen.head(messages.heading[0], messages.heading[1]);
     for (n, result) in report.results.iter().enumerate() {
         let ComparedResultSummary { file, title, date, acceptable, .. } = result;
-        let verdict = if *acceptable { "" } else { "; NOT ACCEPTABLE" };
-        screen.say(2, &format!("{}  {file}: {}, {date}, {title}{verdict}", n + 1, unit(result)));
+        let verdict = if *acceptable { String::new() } else { format!("; {}", messages.not_acceptable) };
+        let (unit, date) = (unit(result, messages), language.written_date(date));
+        screen.say(2, &format!("{}  {file}: {unit}, {date}, {title}{verdict}", n + 1));
     }
     for pair in &report.comparisons {
-        one_pair(&mut screen, report, pair);
+        one_pair(&mut screen, report, pair, language);
     }
     let all = report.comparisons.iter().flat_map(|pair| &pair.differences);
-    legend(&mut screen, all.map(|d| (d.name.as_str(), d.group)));
+    legend_in(&mut screen, all.map(|d| (d.name.as_str(), d.group)), language);
     screen
 }
 
-fn one_pair(screen: &mut Screen, report: &ComparisonReport, pair: &PairComparison) {
+fn one_pair(screen: &mut Screen, report: &ComparisonReport, pair: &PairComparison, language: Language) {
+    let messages = language.comparison();
     screen.gap();
-    let years = pair.years.map_or(String::new(), |years| format!(", {years:.2} years between them"));
-    screen.say(0, &format!("RESULT {} LESS RESULT {}{years}", pair.second + 1, pair.first + 1));
+    let years = pair.years.map(|years| language.plain(format!("{years:.2}")));
+    screen.say(0, &(messages.less)(pair.second + 1, pair.first + 1, years.as_deref()));
     if pair.same_files > 0 {
-        let files = counted(pair.same_files, "file");
-        screen.marked(
-            Emphasis::Warning,
-            "SAME FILES",
-            &format!("both rest on {files} with the same bytes: one measurement, not two"),
-        );
+        screen.marked(Emphasis::Warning, messages.same_files, &(messages.same_files_text)(pair.same_files));
     }
-    cautions(screen, report, pair);
-    differences(screen, pair);
+    cautions(screen, report, pair, messages);
+    differences(screen, pair, language);
     let beyond = pair.differences.iter().filter(|d| d.e_n.abs() > 1.0).count();
     if let (Some(chi_squared), Some(probability)) = (pair.chi_squared, pair.probability) {
         let count = pair.degrees_of_freedom;
-        screen.say(
-            2,
-            &format!(
-                "{beyond} of {count} have E_n beyond 1; by chance it is 1 in 20, and a DISAGREE in 1 of 100 pairs"
-            ),
-        );
-        screen.say(
-            2,
-            &format!(
-                "all {count} together: chi^2 = {chi_squared:.1} with {count} degrees of freedom, probability \
-                 {} if nothing has changed",
-                chance(probability)
-            ),
-        );
+        screen.say(2, &(messages.beyond)(beyond, count));
+        let numbers = [format!("{chi_squared:.1}"), chance(probability)].map(|number| language.plain(number));
+        screen.say(2, &(messages.together)(count, &numbers[0], &numbers[1]));
     }
 }
 
-fn differences(screen: &mut Screen, pair: &PairComparison) {
+fn differences(screen: &mut Screen, pair: &PairComparison, language: Language) {
+    let messages = language.comparison();
     let columns = [
         ("", Align::Left),
-        ("unit", Align::Left),
-        ("difference", Align::Right),
+        (messages.unit, Align::Left),
+        (messages.difference, Align::Right),
         ("E_n", Align::Right),
-        ("per year", Align::Right),
+        (messages.per_year, Align::Right),
         ("", Align::Words),
     ];
     let mut table = Table::new(2, columns);
     for d in &pair.differences {
         let (factor, unit) = customary(&d.unit, d.group);
-        let shown =
-            |share: f64| Cell::estimate(with_uncertainty(share * d.difference, share.abs() * d.standard_uncertainty));
+        let shown = |share: f64| {
+            let (value, u) = with_uncertainty(share * d.difference, share.abs() * d.standard_uncertainty);
+            Cell::estimate((language.plain(value), language.plain(u)))
+        };
         let per_year = pair.years.map_or(Cell::default(), |years| shown(factor / years));
-        let mark = if d.disagrees { "DISAGREE" } else { "" };
-        let e_n = unsigned_zero(format!("{:.2}", d.e_n));
+        let mark = if d.disagrees { messages.disagrees } else { "" };
+        let e_n = language.plain(unsigned_zero(format!("{:.2}", d.e_n)));
+        let unit = language.plain_unit(unit);
         table.row([d.name.as_str().into(), unit.into(), shown(factor), e_n.into(), per_year, mark.into()]);
     }
     screen.table(table);
 }
 
 /// What forbids or limits the comparison.
-fn cautions(screen: &mut Screen, report: &ComparisonReport, pair: &PairComparison) {
+fn cautions(screen: &mut Screen, report: &ComparisonReport, pair: &PairComparison, messages: &ComparisonMessages) {
+    let mut warn = |mark: &str, words: &str| screen.marked(Emphasis::Warning, mark, words);
     if !pair.same_unit {
-        let [first, second] = [pair.first, pair.second].map(|n| unit(&report.results[n]));
-        let words = format!("the first result is of {first}, the second of {second}");
-        screen.marked(Emphasis::Warning, "DIFFERENT UNITS", &words);
+        let [first, second] = [pair.first, pair.second].map(|n| unit(&report.results[n], messages));
+        warn(messages.different_units, &(messages.different_units_text)(&first, &second));
     }
-    for (which, terms) in [("first", &pair.only_in_first), ("second", &pair.only_in_second)] {
+    for (only_in, terms) in messages.only_in.iter().zip([&pair.only_in_first, &pair.only_in_second]) {
         if !terms.is_empty() {
-            let words = format!("only the {which} has {}: other coefficients may differ for that", terms.join(", "));
-            screen.marked(Emphasis::Warning, "DIFFERENT ERROR MODELS", &words);
+            warn(messages.different_models, &only_in(&terms.join(", ")));
         }
     }
     if !pair.by_priors_alone.is_empty() {
-        let words = format!("priors alone determine {}: they show no change", pair.by_priors_alone.join(", "));
-        screen.marked(Emphasis::Warning, "NOT COMPARED", &words);
+        warn(messages.not_compared, &(messages.by_priors_alone)(&pair.by_priors_alone.join(", ")));
     }
     if pair.differences.is_empty() {
-        let words = "the two determine no coefficient in common";
-        screen.marked(Emphasis::Warning, "NOTHING TO COMPARE", words);
+        warn(messages.nothing[0], messages.nothing[1]);
     }
 }
 
-fn unit(result: &ComparedResultSummary) -> String {
-    unit_name(&result.unit_model, &result.unit_serial)
+fn unit(result: &ComparedResultSummary, messages: &ComparisonMessages) -> String {
+    (messages.unit_name)(&result.unit_model, &result.unit_serial)
 }

@@ -8,6 +8,16 @@ use crate::language::Language;
 
 /// What the names in a table mean, each stem once: `alpha: tilt of the rotation axis`.
 pub(super) fn legend<'p>(screen: &mut Screen, parameters: impl Iterator<Item = (&'p str, Group)>) {
+    legend_in(screen, parameters, Language::English);
+}
+
+/// The same in a language.
+pub(super) fn legend_in<'p>(
+    screen: &mut Screen,
+    parameters: impl Iterator<Item = (&'p str, Group)>,
+    language: Language,
+) {
+    let (messages, of) = (language.messages(), language.comparison());
     let mut stems: Vec<(&str, Vec<Group>)> = Vec::new();
     let (mut has_position, mut has_pair) = (false, false);
     for (name, group) in parameters {
@@ -20,13 +30,13 @@ pub(super) fn legend<'p>(screen: &mut Screen, parameters: impl Iterator<Item = (
             None => stems.push((stem, vec![group])),
         }
     }
-    let word = |group: &Group| (Language::English.messages().words.group)(*group).to_lowercase();
+    let word = |group: &Group| (messages.words.group)(*group).to_lowercase();
     let meaning = |(stem, groups): &(&str, Vec<Group>)| {
-        format!("{stem}: {}", groups.iter().map(word).collect::<Vec<_>>().join(" or "))
+        format!("{stem}: {}", groups.iter().map(word).collect::<Vec<_>>().join(of.or))
     };
     let mut words: Vec<String> = stems.iter().map(meaning).collect();
-    words.extend(has_position.then(|| "delta[n]: of position n".to_owned()));
-    words.extend(has_pair.then(|| "dR[A]: of the pair A of positions".to_owned()));
+    words.extend(has_position.then(|| of.position.to_owned()));
+    words.extend(has_pair.then(|| of.pair.to_owned()));
     if !words.is_empty() {
         screen.sentence(2, 2, &format!("{}.", words.join("; ")));
     }
