@@ -8,6 +8,7 @@ use super::prediction::LEANING;
 use super::screen::Screen;
 use super::symbols::legend;
 use super::table::{Align, Cell, Table};
+use crate::evaluation::{chance_distance, chance_of_coverage, expected_deviation};
 use crate::number::{counted, two_digits, unsigned_zero};
 
 /// For which unit the readings were drawn where that is not the one of the data, and what the runs show beside what was
@@ -21,8 +22,7 @@ pub fn monte_carlo_text(case: &MonteCarloCase, monte_carlo: &MonteCarlo, coverag
     let runs = counted(monte_carlo.runs, "calibration");
     screen.head("MONTE CARLO", &format!("{runs}, {} did not converge", monte_carlo.failures));
     statistics(&mut screen, parameters, monte_carlo);
-    let percent = 100.0 * coverage;
-    let chance = 2.0 * (percent * (100.0 - percent) / monte_carlo.runs.max(1) as f64).sqrt();
+    let (percent, chance) = (100.0 * coverage, chance_of_coverage(coverage, monte_carlo));
     screen.say(
         2,
         &format!("intervals are to cover {percent:.2} %, within {chance:.2} by chance (two standard deviations)"),
@@ -38,9 +38,9 @@ pub fn monte_carlo_text(case: &MonteCarloCase, monte_carlo: &MonteCarlo, coverag
                 square.mean,
                 square.standard_deviation,
                 square.degrees_of_freedom,
-                (2.0 * square.degrees_of_freedom as f64).sqrt(),
+                expected_deviation(square),
                 square.distance_from_chi_squared(),
-                1.36 / (monte_carlo.runs.max(1) as f64).sqrt()
+                chance_distance(monte_carlo)
             ),
         );
     }
