@@ -7,6 +7,7 @@ use centrical_session::{
 };
 
 use super::axes::axes as other_axes;
+use super::chance::chance_to_three_places;
 use super::drift::drift;
 use super::pattern::pattern_in_words;
 use super::priors::priors as prior_table;
@@ -313,8 +314,8 @@ const NAMES: usize = 8;
 /// What the residuals say of the model and of the weights.
 fn validity(screen: &mut Screen, result: &CalibrationResult) {
     let Some(validity) = result.validity.as_ref().filter(|_| result.fit.degrees_of_freedom > 0) else { return };
-    let chance = validity.probability;
-    screen.fact("VALID", &format!("chi^2 as large or larger comes by chance with a probability of {chance:.3}"));
+    let chance = chance_to_three_places(validity.probability);
+    screen.fact("VALID", &format!("chi^2 as large or larger comes by chance with a probability of {chance}"));
     if result.chi_squared_is_small() {
         screen.fact("", Language::English.messages().chi_squared_small);
     }
