@@ -38,56 +38,87 @@ fn unit_parameter(report: &UnitHistoryReport, p: &UnitParameter, limits: &Parame
 /// Individuals, moving ranges, weighted means and cumulative sums, each a plot with its limits.
 pub fn chart_plots(report: &ChartReport) -> Vec<(&'static str, Plot)> {
     let (factor, unit) = customary(&report.unit, report.group);
-    let count = report.values.len() as f64;
-    let level = |label: &str, value: f64| Series::line(label, vec![Point::new(1.0, value), Point::new(count, value)]);
-    let numbered = |values: &[f64], first: usize, factor: f64| -> Vec<Point> {
-        values.iter().enumerate().map(|(n, value)| Point::new((n + first) as f64, factor * value)).collect()
-    };
-    let x = || Axis::linear("session, in the order of time");
-    let y = |what: &str| Axis::linear(format!("{what}, {unit}"));
-    let signals = |kind: ChartKind, values: &[f64], first: usize, factor: f64| {
-        let of = report.signals.iter().filter(|signal| signal.rule.kind() == kind);
+    let charts = Charts { report, factor, unit };
+    vec![
+        ("individuals", charts.individuals()),
+        ("moving-ranges", charts.moving_ranges()),
+        ("ewma", charts.weighted_means()),
+        ("cusum", charts.cumulative_sums()),
+    ]
+}
+
+/// The charts of a report in its customary unit.
+struct Charts<'r> {
+    report: &'r ChartReport,
+    factor: f64,
+    unit: &'r str,
+}
+
+impl Charts<'_> {
+    fn individuals(&self) -> Plot {
+        let (report, factor) = (self.report, self.factor);
+        self.plot("individuals", self.axis(&report.name))
+            .with(Series::line_and_markers("values", numbered(&report.values, 1, factor)))
+            .with(self.level("centre", factor * report.centre))
+            .with(self.level("lower limit", factor * report.limits[0]))
+            .with(self.level("upper limit", factor * report.limits[1]))
+            .with(self.signals(ChartKind::Individuals, &report.values, 1, factor))
+    }
+
+    fn moving_ranges(&self) -> Plot {
+        let (report, factor) = (self.report, self.factor.abs());
+        self.plot("moving ranges", self.axis("moving range"))
+            .with(Series::line_and_markers("ranges", numbered(&report.ranges, 2, factor)))
+            .with(self.level("upper limit", factor * report.range_limit))
+            .with(self.signals(ChartKind::MovingRange, &report.ranges, 2, factor))
+    }
+
+    fn weighted_means(&self) -> Plot {
+        let (report, factor) = (self.report, self.factor);
+        let limit = |sign: f64| {
+            let ends = report.ewma_half_widths.iter().map(|half| report.centre + sign * half);
+            numbered(&ends.collect::<Vec<f64>>(), 1, factor)
+        };
+        self.plot("weighted means (EWMA)", self.axis(&report.name))
+            .with(Series::line_and_markers("means", numbered(&report.ewma, 1, factor)))
+            .with(Series::line("lower limit", limit(-1.0)))
+            .with(Series::line("upper limit", limit(1.0)))
+            .with(self.signals(ChartKind::Ewma, &report.ewma, 1, factor))
+    }
+
+    fn cumulative_sums(&self) -> Plot {
+        let report = self.report;
+        let pairs = report.cusum_upper.iter().zip(&report.cusum_lower);
+        let larger: Vec<f64> = pairs.map(|(upper, lower)| upper.max(*lower)).collect();
+        self.plot("cumulative sums", Axis::linear("standard deviations"))
+            .with(Series::line_and_markers("upwards", numbered(&report.cusum_upper, 1, 1.0)))
+            .with(Series::line_and_markers("downwards", numbered(&report.cusum_lower, 1, 1.0)))
+            .with(self.level("limit", report.cusum_limit))
+            .with(self.signals(ChartKind::Cusum, &larger, 1, 1.0))
+    }
+
+    fn plot(&self, title: &str, y: Axis) -> Plot {
+        Plot::new(format!("{}: {title}", self.report.name), Axis::linear("session, in the order of time"), y)
+    }
+
+    fn axis(&self, what: &str) -> Axis {
+        Axis::linear(format!("{what}, {}", self.unit))
+    }
+
+    fn level(&self, label: &str, value: f64) -> Series {
+        let count = self.report.values.len() as f64;
+        Series::line(label, vec![Point::new(1.0, value), Point::new(count, value)])
+    }
+
+    /// Those of `values`, of which the first is of session `first`, that give a signal.
+    fn signals(&self, kind: ChartKind, values: &[f64], first: usize, factor: f64) -> Series {
+        let of = self.report.signals.iter().filter(|signal| signal.rule.kind() == kind);
         let at = of.filter_map(|signal| Some((signal.session, values.get((signal.session + 1).checked_sub(first)?)?)));
         Series::markers("signals", at.map(|(n, value)| Point::new((n + 1) as f64, factor * value)).collect())
-    };
-    let half = |sign: f64| -> Vec<Point> {
-        let ends = report.ewma_half_widths.iter().map(|half| report.centre + sign * half);
-        numbered(&ends.collect::<Vec<f64>>(), 1, factor)
-    };
-    let sums = |n: usize| report.cusum_upper[n].max(report.cusum_lower[n]);
-    let largest_sums: Vec<f64> = (0..report.values.len()).map(sums).collect();
-    vec![
-        (
-            "individuals",
-            Plot::new(format!("{}: individuals", report.name), x(), y(&report.name))
-                .with(Series::line_and_markers("values", numbered(&report.values, 1, factor)))
-                .with(level("centre", factor * report.centre))
-                .with(level("lower limit", factor * report.limits[0]))
-                .with(level("upper limit", factor * report.limits[1]))
-                .with(signals(ChartKind::Individuals, &report.values, 1, factor)),
-        ),
-        (
-            "moving-ranges",
-            Plot::new(format!("{}: moving ranges", report.name), x(), y("moving range"))
-                .with(Series::line_and_markers("ranges", numbered(&report.ranges, 2, factor.abs())))
-                .with(level("upper limit", factor.abs() * report.range_limit))
-                .with(signals(ChartKind::MovingRange, &report.ranges, 2, factor.abs())),
-        ),
-        (
-            "ewma",
-            Plot::new(format!("{}: weighted means (EWMA)", report.name), x(), y(&report.name))
-                .with(Series::line_and_markers("means", numbered(&report.ewma, 1, factor)))
-                .with(Series::line("lower limit", half(-1.0)))
-                .with(Series::line("upper limit", half(1.0)))
-                .with(signals(ChartKind::Ewma, &report.ewma, 1, factor)),
-        ),
-        (
-            "cusum",
-            Plot::new(format!("{}: cumulative sums", report.name), x(), Axis::linear("standard deviations"))
-                .with(Series::line_and_markers("upwards", numbered(&report.cusum_upper, 1, 1.0)))
-                .with(Series::line_and_markers("downwards", numbered(&report.cusum_lower, 1, 1.0)))
-                .with(level("limit", report.cusum_limit))
-                .with(signals(ChartKind::Cusum, &largest_sums, 1, 1.0)),
-        ),
-    ]
+    }
+}
+
+/// Values over the sessions from `first` on.
+fn numbered(values: &[f64], first: usize, factor: f64) -> Vec<Point> {
+    values.iter().enumerate().map(|(n, value)| Point::new((n + first) as f64, factor * value)).collect()
 }
