@@ -22,6 +22,7 @@ mod rests_line;
 mod rests_on;
 mod rivals;
 mod screen;
+mod short_list;
 mod symbols;
 mod table;
 mod unit;

@@ -4,6 +4,7 @@ use centrical_session::{DoubtKind, HistoryLine, HistoryList, unit_name};
 
 use crate::number::counted;
 use crate::terminal::screen::{Emphasis, Screen};
+use crate::terminal::short_list::short_list;
 use crate::terminal::table::{Align, Table};
 
 /// A line for each calibration, by unit and day.
@@ -48,10 +49,8 @@ fn doubts(screen: &mut Screen, list: &HistoryList) {
     }
     for doubt in doubts {
         let (mark, words) = words(doubt.kind);
-        let shown: Vec<String> = doubt.of.iter().take(MOST_SHOWN).map(|of| named(list, of)).collect();
-        let more = doubt.of.len() - shown.len();
-        let more = if more > 0 { format!(" and {more} more") } else { String::new() };
-        screen.marked(Emphasis::NotAcceptable, mark, &format!("{}{more}: {words}", shown.join("; ")));
+        let of: Vec<String> = doubt.of.iter().map(|of| named(list, of)).collect();
+        screen.marked(Emphasis::NotAcceptable, mark, &format!("{}: {words}", short_list(&of, MOST_SHOWN, "; ")));
     }
 }
 

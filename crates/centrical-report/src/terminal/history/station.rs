@@ -22,6 +22,15 @@ fn finding(p: &StationParameter) -> String {
 /// A station over its sessions.
 pub fn station_history_text(report: &StationHistoryReport) -> Screen {
     let mut screen = Screen::default();
+    verdict(&mut screen, report);
+    screen.gap();
+    parameters(&mut screen, report);
+    legend(&mut screen, report.parameters.iter().map(|p| (p.name.as_str(), p.group)));
+    screen
+}
+
+/// Whether the machine is steady, and what is not tested.
+fn verdict(screen: &mut Screen, report: &StationHistoryReport) {
     let untested = report.parameters.iter().filter(|p| p.probability.is_none()).count();
     match report.is_steady {
         Some(true) => {
@@ -53,7 +62,10 @@ pub fn station_history_text(report: &StationHistoryReport) -> Screen {
         let words = format!("{words}: a test takes eight sessions that count, on different days");
         screen.marked(Emphasis::Warning, "FEW", &words);
     }
-    screen.gap();
+}
+
+/// The parameters of the machine.
+fn parameters(screen: &mut Screen, report: &StationHistoryReport) {
     let name = if report.station.is_empty() { "without a name" } else { &report.station };
     let counts = format!("{} of {}", counted(report.sessions, "session"), counted(report.units, "unit"));
     screen.head(
@@ -93,6 +105,4 @@ pub fn station_history_text(report: &StationHistoryReport) -> Screen {
         ]);
     }
     screen.table(table);
-    legend(&mut screen, report.parameters.iter().map(|p| (p.name.as_str(), p.group)));
-    screen
 }

@@ -10,6 +10,7 @@ use centrical_session::{
 use crate::number::{counted, two_digits, unsigned_zero, with_uncertainty};
 use crate::terminal::chance::chance;
 use crate::terminal::screen::{Emphasis, Screen};
+use crate::terminal::short_list::short_list;
 use crate::terminal::symbols::legend;
 use crate::terminal::table::{Align, Cell, Table};
 
@@ -45,6 +46,21 @@ pub fn unit_history_text(report: &UnitHistoryReport) -> Screen {
 }
 
 fn verdict(screen: &mut Screen, report: &UnitHistoryReport) {
+    due(screen, report);
+    last_calibration(screen, report);
+    incomplete(screen, report);
+    steps(screen, report);
+    sameness(screen, report);
+    twice(screen, report);
+    if report.sessions.len() < 3 {
+        screen.marked(Emphasis::Warning, "FEW", "two calibrations show no trend beside the scatter between sessions");
+    } else if report.is_unexplained() {
+        screen.marked(Emphasis::Warning, "FEW", "the calibrations are too few to tell a drift from scatter");
+    }
+}
+
+/// Until when readings are within the limit.
+fn due(screen: &mut Screen, report: &UnitHistoryReport) {
     let percent = percent(report.coverage);
     let within = |limit: f64| {
         let range = format!("{:.0} g", report.range / G);
@@ -83,6 +99,10 @@ fn verdict(screen: &mut Screen, report: &UnitHistoryReport) {
         }
         (_, None, _) => {}
     }
+}
+
+/// What is wrong with the last calibration, which all rests on.
+fn last_calibration(screen: &mut Screen, report: &UnitHistoryReport) {
     if !report.has_acceptable_last() {
         let words = "the last calibration has an objection, and all that stands here takes it as it is";
         screen.marked(Emphasis::NotAcceptable, "NOT ACCEPTABLE", words);
@@ -94,8 +114,12 @@ fn verdict(screen: &mut Screen, report: &UnitHistoryReport) {
         );
         screen.marked(Emphasis::NotAcceptable, "AHEAD", &words);
     }
+}
+
+/// Calibrations and parameters that are not compared, and calibrations with an objection.
+fn incomplete(screen: &mut Screen, report: &UnitHistoryReport) {
     for LeftOutSession { session, lacks } in report.incomplete.iter().take(NAMES) {
-        let words = format!("{}, {}: it does not determine {}", session.date, session.source, short_list(lacks));
+        let words = format!("{}, {}: it does not determine {}", session.date, session.source, first_of(lacks));
         screen.marked(Emphasis::Warning, "INCOMPLETE", &words);
     }
     if report.incomplete.len() > NAMES {
@@ -106,13 +130,13 @@ fn verdict(screen: &mut Screen, report: &UnitHistoryReport) {
         screen.marked(Emphasis::Warning, "INCOMPLETE", &left_out(session));
     }
     if !report.not_compared.is_empty() {
-        let words = format!("not determined before the last calibration: {}", short_list(&report.not_compared));
+        let words = format!("not determined before the last calibration: {}", first_of(&report.not_compared));
         screen.marked(Emphasis::Warning, "NOT COMPARED", &words);
     }
     if !report.not_in_last.is_empty() {
         let words = format!(
             "the last calibration does not determine {}, as earlier ones do; a due date counts them as an error",
-            short_list(&report.not_in_last)
+            first_of(&report.not_in_last)
         );
         screen.marked(Emphasis::Warning, "NOT IN LAST", &words);
     }
@@ -120,14 +144,6 @@ fn verdict(screen: &mut Screen, report: &UnitHistoryReport) {
     if refused > 0 {
         let words = format!("{} before the last with an objection, not left out", counted(refused, "calibration"));
         screen.marked(Emphasis::Warning, "NOT ACCEPTABLE", &words);
-    }
-    steps(screen, report);
-    sameness(screen, report);
-    twice(screen, report);
-    if report.sessions.len() < 3 {
-        screen.marked(Emphasis::Warning, "FEW", "two calibrations show no trend beside the scatter between sessions");
-    } else if report.is_unexplained() {
-        screen.marked(Emphasis::Warning, "FEW", "the calibrations are too few to tell a drift from scatter");
     }
 }
 
@@ -143,7 +159,7 @@ fn steps(screen: &mut Screen, report: &UnitHistoryReport) {
         let words = format!(
             "between {before} and {after}, in {}: it explains the values better than a line in time does, as a repair or another unit of this \
              serial number would; forecasts and due dates continue the line",
-            short_list(&names)
+            first_of(&names)
         );
         screen.marked(Emphasis::Warning, "STEP", &words);
     }
@@ -206,19 +222,13 @@ fn twice(screen: &mut Screen, report: &UnitHistoryReport) {
 /// A calibration that is left out, and why.
 pub(super) fn left_out(left_out: &LeftOutSession) -> String {
     let session = &left_out.session;
-    let lacks = short_list(&left_out.lacks);
+    let lacks = first_of(&left_out.lacks);
     format!("{}, {}: it does not determine {lacks}, and is not compared", session.date, session.source)
 }
 
 /// The first names, and the number of the others.
-fn short_list(names: &[String]) -> String {
-    first_of(names, NAMES)
-}
-
-/// The first `most` of `names`, and the number of the others.
-pub(super) fn first_of(names: &[String], most: usize) -> String {
-    let first = names.iter().take(most).map(String::as_str).collect::<Vec<_>>().join(", ");
-    if names.len() > most { format!("{first} and {} more", names.len() - most) } else { first }
+fn first_of(names: &[String]) -> String {
+    short_list(names, NAMES, ", ")
 }
 
 /// Names in a short list.

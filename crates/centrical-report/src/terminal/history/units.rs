@@ -4,10 +4,11 @@ use centrical_session::{
     BatchWithoutUnit, BeyondLimit, UnitFindingKind, UnitsHistoryReport, UnitsParameter, UntestedStation, customary,
 };
 
-use super::unit::{first_of, left_out};
+use super::unit::left_out;
 use crate::number::{counted, with_uncertainty};
 use crate::terminal::chance::chance;
 use crate::terminal::screen::{Emphasis, Screen};
+use crate::terminal::short_list::short_list;
 use crate::terminal::symbols::legend;
 use crate::terminal::table::{Align, Cell, Table};
 
@@ -52,7 +53,7 @@ fn untested(screen: &mut Screen, report: &UnitsHistoryReport) {
         let words = format!(
             "{}{at}, and fewer than ten do not show which of them is outlying: {}",
             counted(units.len(), "unit"),
-            first_of(units, SHOWN)
+            short_list(units, SHOWN, ", ")
         );
         screen.marked(Emphasis::Warning, "FEW", &words);
     }
@@ -60,7 +61,7 @@ fn untested(screen: &mut Screen, report: &UnitsHistoryReport) {
 
 fn beyond_limits(screen: &mut Screen, report: &UnitsHistoryReport) {
     for BeyondLimit { parameter, units } in &report.beyond_limits {
-        let words = format!("{parameter}: {}, serial {}", counted(units.len(), "unit"), first_of(units, SHOWN));
+        let words = format!("{parameter}: {}, serial {}", counted(units.len(), "unit"), short_list(units, SHOWN, ", "));
         screen.marked(Emphasis::NotAcceptable, "BEYOND LIMITS", &words);
     }
 }
@@ -77,7 +78,7 @@ fn calibrations(screen: &mut Screen, report: &UnitsHistoryReport) {
     }
     if !report.not_compared.is_empty() {
         let names: Vec<String> = report.not_compared.iter().map(|p| format!("{} ({})", p.name, p.sessions)).collect();
-        let words = format!("some calibrations alone determine {}", first_of(&names, SHOWN));
+        let words = format!("some calibrations alone determine {}", short_list(&names, SHOWN, ", "));
         screen.marked(Emphasis::Warning, "NOT COMPARED", &words);
     }
     if report.not_acceptable > 0 {
@@ -168,7 +169,7 @@ fn parameters(screen: &mut Screen, report: &UnitsHistoryReport) {
 fn batches(screen: &mut Screen, report: &UnitsHistoryReport) {
     let all = report.parameters.first().map_or(&[][..], |of| &of.batches);
     let list: Vec<String> = all.iter().map(|b| format!("{} ({})", b.batch, b.units)).collect();
-    let list = if list.is_empty() { "no unit of a batch".to_owned() } else { first_of(&list, SHOWN) };
+    let list = if list.is_empty() { "no unit of a batch".to_owned() } else { short_list(&list, SHOWN, ", ") };
     let compared = report.parameters.iter().filter(|p| p.batch_probability.is_some()).count();
     if let Some(station) = report.batches_at.as_ref().filter(|_| !all.is_empty()) {
         let words =
@@ -225,7 +226,7 @@ fn batch_means(screen: &mut Screen, report: &UnitsHistoryReport) {
 /// Serial numbers of the batches that no unit has: those near one by itself, the others together.
 fn without_unit(screen: &mut Screen, report: &UnitsHistoryReport) {
     let quoted = |serials: &[String]| {
-        first_of(&serials.iter().map(|serial| format!("{serial:?}")).collect::<Vec<String>>(), SHOWN)
+        short_list(&serials.iter().map(|serial| format!("{serial:?}")).collect::<Vec<String>>(), SHOWN, ", ")
     };
     let (near, other): (Vec<&BatchWithoutUnit>, Vec<_>) =
         report.without_unit.iter().partition(|of| !of.near.is_empty());
