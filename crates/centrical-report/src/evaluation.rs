@@ -15,6 +15,7 @@ mod reading_error;
 mod rests;
 mod symbol;
 mod typeset;
+mod unit_due;
 mod unscheduled;
 
 pub(crate) use self::combination::{combination, printed_combination};
@@ -31,4 +32,5 @@ pub(crate) use self::not_used::{has_rounded_times, not_used};
 pub(crate) use self::reading_error::{ReadingError, compensated, reading_errors};
 pub(crate) use self::rests::{GravityMisfit, LAG, least_rest, rest_lengths, shortened_by_lag};
 pub(crate) use self::symbol::{ParameterName, newtonometer, symbol};
+pub(crate) use self::unit_due::UnitDue;
 pub use self::unscheduled::unscheduled;

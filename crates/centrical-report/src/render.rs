@@ -1,6 +1,7 @@
 //! Renderers of documents: each draws the same content in a form of its own. The pages of a store, which are a list and no document,
 //! stand beside them.
 
+mod frame;
 mod history;
 mod html;
 mod live;
@@ -9,8 +10,8 @@ mod results;
 mod screen;
 
 pub use self::history::{
-    IndexedModel, IndexedStation, ListedUnit, PageKind, StoreCharts, UnitDue, history_due_page, history_index,
-    history_model_page, history_station_page, history_unit_page, no_unit_history_page,
+    IndexedModel, IndexedStation, ListedUnit, PageKind, StoreCharts, due_comment, due_of_page, history_due_page,
+    history_index, history_model_page, history_station_page, history_unit_page, no_unit_history_page,
 };
 pub use self::html::html;
 pub use self::live::{LIVE_SCRIPT, LIVE_STYLE, live_page, live_panel};

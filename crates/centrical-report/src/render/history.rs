@@ -11,7 +11,7 @@ mod unit;
 mod units;
 
 pub use self::charts::StoreCharts;
-pub use self::due::{UnitDue, history_due_page};
+pub use self::due::{due_comment, due_of_page, history_due_page};
 pub use self::frame::PageKind;
 pub use self::index::{IndexedModel, IndexedStation, history_index};
 pub use self::model::history_model_page;

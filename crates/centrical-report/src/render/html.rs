@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 
+use super::frame::head;
 use crate::document::{Align, Block, Column, Document, Layer, Opening, Row, Section, Table, TableKind, Tone};
 use crate::figure::Figure;
 use crate::plot::Escaped;
@@ -10,14 +11,8 @@ const STYLE: &str = include_str!("html/style.css");
 
 /// The page of a document. The same document gives the same bytes.
 pub fn html(document: &Document) -> String {
-    let mut html = format!(
-        "<!DOCTYPE html>\n<html lang=\"{}\"><head><meta charset=\"utf-8\">\
-         <meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">\
-         <meta name=\"color-scheme\" content=\"light dark\"><link rel=\"icon\" href=\"data:,\">\
-         <title>{}</title><style>{STYLE}</style></head>\n<body><main>\n",
-        document.language.code(),
-        Escaped(&document.title)
-    );
+    let mut html = head(document.language.code(), &document.title, &format!("<style>{STYLE}</style>"));
+    html.push_str("<body><main>\n");
     opening(&mut html, &document.opening);
     let (first, further): (Vec<_>, Vec<_>) = document.sections.iter().partition(|part| part.layer == Layer::First);
     let (verdicts, text): (Vec<&Section>, Vec<_>) = first.into_iter().partition(|part| part.tone != Tone::Plain);

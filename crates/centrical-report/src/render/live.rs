@@ -4,6 +4,7 @@ use std::fmt::Write;
 
 use centrical_session::{Agreement, HistoryEntry, LivePlateau, LiveReport, LiveStatus, PlateauLabel, rpm};
 
+use super::frame::head;
 use crate::document::rival;
 use crate::evaluation::expanded_of_normal;
 use crate::figure::{Figure, live_readings_figure, live_speeds_figure, live_uncertainties_figure};
@@ -41,15 +42,9 @@ pub fn live_page(live: &LiveReport, history: &[HistoryEntry], now: f64, language
 /// A page of a server: its style and script are files of their own.
 pub(super) fn served(title: &str, body: &str, is_live: bool, language: Language) -> String {
     let script = if is_live { "<script src=\"/live.js\" defer></script>" } else { "" };
-    format!(
-        "<!DOCTYPE html>\n<html lang=\"{}\"><head><meta charset=\"utf-8\">\
-         <meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">\
-         <meta name=\"color-scheme\" content=\"light dark\"><link rel=\"icon\" href=\"data:,\">\
-         <title>{}</title><link rel=\"stylesheet\" href=\"/live.css\">{script}</head>\n\
-         <body><main class=\"wall\">\n{body}</main></body></html>\n",
-        language.code(),
-        Escaped(title)
-    )
+    let style = format!("<link rel=\"stylesheet\" href=\"/live.css\">{script}");
+    let head = head(language.code(), title, &style);
+    format!("{head}<body><main class=\"wall\">\n{body}</main></body></html>\n")
 }
 
 /// Links to the other languages.

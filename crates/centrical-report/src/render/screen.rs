@@ -2,20 +2,22 @@
 
 use std::fmt::Write;
 
+use super::frame::{Column, sortable};
 use crate::plot::Escaped;
 use crate::terminal::{Align, Emphasis, Part, Screen, Table};
 
 /// Writes the parts of `screen`.
 pub(super) fn shown(body: &mut String, screen: &Screen) {
     for part in screen.parts() {
-        let _ = match part {
-            Part::Gap => Ok(()),
+        match part {
+            Part::Gap => {}
             Part::Table(table) => whole_table(body, table),
-            Part::Words { mark: None, words, .. } => writeln!(body, "<p>{}</p>", Escaped(words)),
+            // Writing to a String cannot fail.
+            Part::Words { mark: None, words, .. } => _ = writeln!(body, "<p>{}</p>", Escaped(words)),
             Part::Words { mark: Some((emphasis, mark)), words, .. } => {
-                marked(body, *emphasis, mark, words.trim_start())
+                _ = marked(body, *emphasis, mark, words.trim_start());
             }
-        };
+        }
     }
 }
 
@@ -38,24 +40,25 @@ fn sentence_case(heading: &str) -> String {
     first.chain(heading.chars().skip(1).flat_map(char::to_lowercase)).collect()
 }
 
-fn whole_table(body: &mut String, table: &Table) -> std::fmt::Result {
-    let class = |align| if align == Align::Right { " class=\"number\"" } else { "" };
-    body.push_str("<div class=\"scroll\"><table class=\"sortable\"><thead><tr>");
-    let columns: Vec<_> = table.columns().collect();
-    for &(_, title, align) in &columns {
-        write!(body, "<th scope=\"col\"{}>{}</th>", class(align), Escaped(title))?;
-    }
-    body.push_str("</tr></thead><tbody>\n");
-    for row in table.rows() {
-        body.push_str("<tr>");
-        for (n, &(j, _, align)) in columns.iter().enumerate() {
-            let cell = row[j].to_string();
-            match n {
-                0 => write!(body, "<th scope=\"row\"{}>{}</th>", class(align), Escaped(&cell))?,
-                _ => write!(body, "<td{}>{}</td>", class(align), Escaped(&cell))?,
+fn whole_table(body: &mut String, table: &Table) {
+    let columns: Vec<(usize, Column)> = table
+        .columns()
+        .map(|(place, title, align)| {
+            (place, if align == Align::Right { Column::Number(title) } else { Column::Words(title) })
+        })
+        .collect();
+    let titles: Vec<Column> = columns.iter().map(|(_, title)| *title).collect();
+    sortable(body, "", &titles, |body| {
+        for row in table.rows() {
+            body.push_str("<tr>");
+            for (n, (place, title)) in columns.iter().enumerate() {
+                let (cell, class) = (row[*place].to_string(), title.class());
+                let _ = match n {
+                    0 => write!(body, "<th scope=\"row\"{class}>{}</th>", Escaped(&cell)),
+                    _ => write!(body, "<td{class}>{}</td>", Escaped(&cell)),
+                };
             }
+            body.push_str("</tr>\n");
         }
-        body.push_str("</tr>\n");
-    }
-    writeln!(body, "</tbody></table></div>")
+    });
 }

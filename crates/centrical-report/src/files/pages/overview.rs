@@ -12,7 +12,7 @@ use rayon::prelude::*;
 
 use super::request::PagesRequest;
 use crate::render::{
-    IndexedModel, IndexedStation, ListedUnit, PageKind, StoreCharts, UnitDue, history_due_page, history_index,
+    IndexedModel, IndexedStation, ListedUnit, PageKind, StoreCharts, due_of_page, history_due_page, history_index,
     history_model_page, history_station_page,
 };
 
@@ -44,7 +44,7 @@ impl Overview {
     /// The list of due dates, by the page of each unit or its beginning; `None` without a limit, or where a page does not say.
     pub fn due(&self, page: impl Fn(&str) -> Option<String>) -> Option<String> {
         let (limit, units) = self.with_limit.as_ref()?;
-        let due = units.iter().map(|(file, unit)| Some((unit, UnitDue::read(&page(file)?)?)));
+        let due = units.iter().map(|(file, unit)| Some((unit, due_of_page(&page(file)?)?)));
         Some(history_due_page(due.collect::<Option<_>>()?, *limit, Date::today()))
     }
 

@@ -8,6 +8,8 @@ use super::frame::panels;
 use crate::figure::chart_plots;
 use crate::number::{counted, with_uncertainty};
 use crate::plot::Escaped;
+use crate::render::frame::Column::{Number, Words};
+use crate::render::frame::sortable;
 
 /// The charts of a page by parameter, and the reason why a parameter has none.
 #[derive(Debug, Clone, PartialEq)]
@@ -60,28 +62,26 @@ impl StoreCharts {
     }
 
     fn table(&self, body: &mut String) {
-        body.push_str("<div class=\"scroll\"><table class=\"sortable\"><thead><tr><th scope=\"col\">parameter</th><th scope=\"col\">unit</th>");
-        body.push_str("<th scope=\"col\" class=\"number\">centre</th>");
-        for (title, _) in KINDS {
-            let _ = write!(body, "<th scope=\"col\" class=\"number\">{title}</th>");
-        }
-        body.push_str("<th scope=\"col\">last signal</th></tr></thead><tbody>\n");
-        for chart in &self.charts {
-            let (factor, unit) = customary(&chart.unit, chart.group);
-            let (centre, _) = with_uncertainty(factor * chart.centre, factor.abs() * chart.deviation);
-            let _ = write!(
-                body,
-                "<tr><th scope=\"row\">{}</th><td>{unit}</td><td class=\"number\">{centre}</td>",
-                Escaped(&chart.name)
-            );
-            for (_, kind) in KINDS {
-                let count = chart.signals.iter().filter(|signal| signal.rule.kind() == kind).count();
-                let _ = write!(body, "<td class=\"number\">{count}</td>");
-            }
-            let last = chart.signals.last().and_then(|signal| Some((signal, chart.sessions.get(signal.session)?)));
-            let words = last.map(|(signal, of)| format!("{}, serial {}: {}", of.date, of.unit_serial, signal.words));
-            let _ = writeln!(body, "<td>{}</td></tr>", Escaped(&words.unwrap_or_default()));
-        }
-        body.push_str("</tbody></table></div>\n");
+        let kinds = KINDS.map(|(title, _)| Number(title));
+        let names = [Words("parameter"), Words("unit"), Number("centre")];
+        let columns: Vec<_> = names.into_iter().chain(kinds).chain([Words("last signal")]).collect();
+        sortable(body, "", &columns, |body| self.charts.iter().for_each(|chart| row(body, chart)));
     }
+}
+
+fn row(body: &mut String, chart: &ChartReport) {
+    let (factor, unit) = customary(&chart.unit, chart.group);
+    let (centre, _) = with_uncertainty(factor * chart.centre, factor.abs() * chart.deviation);
+    let _ = write!(
+        body,
+        "<tr><th scope=\"row\">{}</th><td>{unit}</td><td class=\"number\">{centre}</td>",
+        Escaped(&chart.name)
+    );
+    for (_, kind) in KINDS {
+        let count = chart.signals.iter().filter(|signal| signal.rule.kind() == kind).count();
+        let _ = write!(body, "<td class=\"number\">{count}</td>");
+    }
+    let last = chart.signals.last().and_then(|signal| Some((signal, chart.sessions.get(signal.session)?)));
+    let words = last.map(|(signal, of)| format!("{}, serial {}: {}", of.date, of.unit_serial, signal.words));
+    let _ = writeln!(body, "<td>{}</td></tr>", Escaped(&words.unwrap_or_default()));
 }

@@ -2,76 +2,29 @@
 
 use std::fmt::Write;
 
-use centrical_session::{Date, MICRO_G, UnitHistoryReport};
+use centrical_session::{Date, MICRO_G};
 
 use super::frame::{linked_serial, opening, page};
 use super::units::ListedUnit;
+use crate::evaluation::UnitDue;
 use crate::number::{counted, two_digits};
 use crate::plot::Escaped;
+use crate::render::frame::{Column, sortable};
 
-/// What the history of a unit says of a limit.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum UnitDue {
-    /// A reading is not within it since that day, or since the last calibration.
-    Overdue(Option<Date>),
-    /// All readings are within it until that day.
-    Due(Date),
-    /// All readings are within it beyond that day.
-    After(Date),
-    /// Some readings are not known.
-    NotKnown,
+/// What is said of a unit, as the comment that its page has behind the document type.
+pub fn due_comment(due: UnitDue) -> String {
+    let (word, day) = due.words();
+    format!("<!-- {word} {} -->\n", day.map_or_else(String::new, |day| day.to_string()))
 }
 
-impl UnitDue {
-    /// What `report` says; not known without a history.
-    pub fn of(report: Option<&UnitHistoryReport>) -> Self {
-        let Some(report) = report else { return Self::NotKnown };
-        match (report.is_within, &report.due, report.due_after) {
-            (Some(false), due, _) => Self::Overdue(due.as_ref().map(|due| due.date)),
-            (_, Some(due), _) => Self::Due(due.date),
-            (_, None, Some(day)) => Self::After(day),
-            (_, None, None) => Self::NotKnown,
-        }
-    }
-
-    /// As the comment that a page of a unit has behind its document type.
-    pub fn comment(self) -> String {
-        let (word, day) = self.words();
-        format!("<!-- {word} {} -->\n", day.map_or_else(String::new, |day| day.to_string()))
-    }
-
-    /// That of a page, from the beginning of its text; `None` where it has no such comment.
-    pub fn read(page: &str) -> Option<Self> {
-        let mut comments = page.lines().skip(1).map_while(|line| line.strip_prefix("<!-- ")?.strip_suffix(" -->"));
-        comments.find_map(Self::parsed)
-    }
-
-    fn parsed(comment: &str) -> Option<Self> {
+/// What is said of a unit, from the beginning of its page; `None` where that has no such comment.
+pub fn due_of_page(page: &str) -> Option<UnitDue> {
+    let mut comments = page.lines().skip(1).map_while(|line| line.strip_prefix("<!-- ")?.strip_suffix(" -->"));
+    comments.find_map(|comment| {
         let (word, day) = comment.rsplit_once(' ')?;
-        let day: Option<Date> = day.parse().ok();
-        match (word, day) {
-            (OVERDUE, day) => Some(Self::Overdue(day)),
-            (DUE, Some(day)) => Some(Self::Due(day)),
-            (AFTER, Some(day)) => Some(Self::After(day)),
-            (NOT_KNOWN, None) => Some(Self::NotKnown),
-            _ => None,
-        }
-    }
-
-    fn words(self) -> (&'static str, Option<Date>) {
-        match self {
-            Self::Overdue(day) => (OVERDUE, day),
-            Self::Due(day) => (DUE, Some(day)),
-            Self::After(day) => (AFTER, Some(day)),
-            Self::NotKnown => (NOT_KNOWN, None),
-        }
-    }
+        UnitDue::named(word, day.parse().ok())
+    })
 }
-
-const OVERDUE: &str = "overdue";
-const DUE: &str = "due";
-const AFTER: &str = "due after";
-const NOT_KNOWN: &str = "not known";
 
 /// The list of units with what is said of each for a `limit` [m/s^2], on a day: the overdue ones first, then by day.
 pub fn history_due_page(mut units: Vec<(&ListedUnit, UnitDue)>, limit: f64, on: Date) -> String {
@@ -80,35 +33,35 @@ pub fn history_due_page(mut units: Vec<(&ListedUnit, UnitDue)>, limit: f64, on: 
     let mut body = opening("Store", "Due dates");
     let _ = writeln!(
         body,
-        "<p>On {on}, of {}, for compensated readings within {} µg: {overdue} overdue.</p>\n<div class=\"scroll\"><table class=\"sortable\"><thead><tr><th scope=\"col\">serial</th>\
-         <th scope=\"col\">model</th><th scope=\"col\">last calibration</th><th scope=\"col\">state</th>\
-         <th scope=\"col\">day</th></tr></thead><tbody>",
+        "<p>On {on}, of {}, for compensated readings within {} µg: {overdue} overdue.</p>",
         counted(units.len(), "unit"),
         two_digits(limit / MICRO_G)
     );
-    for (unit, due) in units {
-        let (word, day) = due.words();
-        let class = match due {
-            UnitDue::Overdue(_) => " class=\"bad\"",
-            UnitDue::Due(_) | UnitDue::After(_) => " class=\"good\"",
-            UnitDue::NotKnown => "",
-        };
-        let _ = writeln!(
-            body,
-            "<tr><th scope=\"row\">{}</th><td>{}</td><td>{}</td><td{class}>{word}</td><td>{}</td></tr>",
-            linked_serial(&unit.model, &unit.serial, |_| true),
-            Escaped(&unit.model),
-            Escaped(&unit.last),
-            day.map_or_else(String::new, |day| day.to_string())
-        );
-    }
-    body.push_str("</tbody></table></div>\n");
+    let columns = ["serial", "model", "last calibration", "state", "day"].map(Column::Words);
+    sortable(&mut body, "", &columns, |body| units.into_iter().for_each(|(unit, due)| row(body, unit, due)));
     page("Due dates", &body)
+}
+
+fn row(body: &mut String, unit: &ListedUnit, due: UnitDue) {
+    let (word, day) = due.words();
+    let class = match due {
+        UnitDue::Overdue(_) => " class=\"bad\"",
+        UnitDue::Due(_) | UnitDue::After(_) => " class=\"good\"",
+        UnitDue::NotKnown => "",
+    };
+    let _ = writeln!(
+        body,
+        "<tr><th scope=\"row\">{}</th><td>{}</td><td>{}</td><td{class}>{word}</td><td>{}</td></tr>",
+        linked_serial(&unit.model, &unit.serial, |_| true),
+        Escaped(&unit.model),
+        Escaped(&unit.last),
+        day.map_or_else(String::new, |day| day.to_string())
+    );
 }
 
 #[cfg(test)]
 mod tests {
-    use super::UnitDue;
+    use super::{UnitDue, due_comment, due_of_page};
 
     #[test]
     fn what_is_due_is_read_from_the_page_of_a_unit() {
@@ -120,9 +73,9 @@ mod tests {
             UnitDue::After(day),
             UnitDue::NotKnown,
         ] {
-            let page = format!("<!DOCTYPE html>\n<!-- 0123abcd -->\n{}<html>", due.comment());
-            assert_eq!(UnitDue::read(&page), Some(due));
+            let page = format!("<!DOCTYPE html>\n<!-- 0123abcd -->\n{}<html>", due_comment(due));
+            assert_eq!(due_of_page(&page), Some(due));
         }
-        assert_eq!(UnitDue::read("<!DOCTYPE html>\n<!-- 0123abcd -->\n<html>"), None);
+        assert_eq!(due_of_page("<!DOCTYPE html>\n<!-- 0123abcd -->\n<html>"), None);
     }
 }

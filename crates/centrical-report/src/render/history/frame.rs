@@ -5,6 +5,7 @@ use std::fmt::Write;
 use centrical_session::sha256;
 
 use crate::plot::{Escaped, Plot, STYLE as PLOT_STYLE};
+use crate::render::frame::head;
 
 const STYLE: &str = include_str!("../html/style.css");
 const LIST_STYLE: &str = include_str!("../html/list.css");
@@ -72,12 +73,6 @@ pub(super) fn panels(body: &mut String, plots: impl IntoIterator<Item = Plot>) {
 
 /// A whole page.
 pub(super) fn page(title: &str, body: &str) -> String {
-    format!(
-        "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\
-         <meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">\
-         <meta name=\"color-scheme\" content=\"light dark\"><link rel=\"icon\" href=\"data:,\">\
-         <title>{}</title><style>{STYLE}{LIST_STYLE}{PLOT_STYLE}</style></head>\n<body><main class=\"wide\">\n{body}\
-         <script>{SCRIPT}</script></main></body></html>\n",
-        Escaped(title)
-    )
+    let head = head("en", title, &format!("<style>{STYLE}{LIST_STYLE}{PLOT_STYLE}</style>"));
+    format!("{head}<body><main class=\"wide\">\n{body}<script>{SCRIPT}</script></main></body></html>\n")
 }

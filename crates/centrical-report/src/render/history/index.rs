@@ -7,6 +7,8 @@ use centrical_session::{Date, HistoryLine, HistoryList, StationHistoryReport, Un
 use super::frame::{PageKind, linked_serial, page, verdict};
 use crate::number::counted;
 use crate::plot::Escaped;
+use crate::render::frame::Column::{Number, Words};
+use crate::render::frame::sortable;
 
 /// A model of units in the list of models.
 #[derive(Debug, Clone, PartialEq)]
@@ -52,15 +54,15 @@ pub fn history_index(
          <label>Model or station <input id=\"words\" type=\"search\"></label>\
          <label>from <input id=\"from\" type=\"date\"></label><label>to <input id=\"to\" type=\"date\"></label>\
          <label>Verdict <select id=\"verdict\"><option value=\"\">all</option><option>acceptable</option><option>not acceptable</option>\
-         <option>failed</option></select></label><output id=\"count\"></output></form>\n\
-         <div class=\"scroll\"><table id=\"list\" class=\"sortable\"><thead><tr><th scope=\"col\">date</th><th scope=\"col\">model</th>\
-         <th scope=\"col\">serial</th><th scope=\"col\">station</th><th scope=\"col\" class=\"number\">chi^2/nu</th>\
-         <th scope=\"col\">verdict</th></tr></thead><tbody>\n",
+         <option>failed</option></select></label><output id=\"count\"></output></form>\n",
     );
-    for line in &list.calibrations {
-        row(&mut body, line, &linked_serial(&line.unit_model, &line.unit_serial, &has_page));
-    }
-    body.push_str("</tbody></table></div>\n");
+    let columns =
+        [Words("date"), Words("model"), Words("serial"), Words("station"), Number("chi^2/nu"), Words("verdict")];
+    sortable(&mut body, "list", &columns, |body| {
+        for line in &list.calibrations {
+            row(body, line, &linked_serial(&line.unit_model, &line.unit_serial, &has_page));
+        }
+    });
     page("Calibrations", &body)
 }
 
@@ -68,68 +70,79 @@ fn models_table(body: &mut String, models: &[IndexedModel]) {
     if models.is_empty() {
         return;
     }
-    body.push_str(
-        "<h2>Models</h2>\n<div class=\"scroll\"><table class=\"sortable\"><thead><tr><th scope=\"col\">model</th>\
-         <th scope=\"col\" class=\"number\">units</th><th scope=\"col\" class=\"number\">calibrations</th><th scope=\"col\">units alike</th>\
-         <th scope=\"col\" class=\"number\">least Cpk</th><th scope=\"col\">of</th><th scope=\"col\">batches that differ</th>\
-         <th scope=\"col\">control charts</th></tr></thead><tbody>\n",
-    );
-    for IndexedModel { report, has_signals } in models {
-        let capability = report.parameters.iter().filter_map(|p| Some((p.name.as_str(), p.capability.as_ref()?.cpk)));
-        let least = capability.min_by(|a, b| a.1.total_cmp(&b.1));
-        let differ: Vec<&str> =
-            report.parameters.iter().filter(|p| p.batches_differ).map(|p| p.name.as_str()).collect();
-        let _ = writeln!(
-            body,
-            "<tr><th scope=\"row\"><a href=\"{}\">{}</a></th><td class=\"number\">{}</td><td class=\"number\">{}</td>{}\
+    body.push_str("<h2>Models</h2>\n");
+    let columns = [
+        Words("model"),
+        Number("units"),
+        Number("calibrations"),
+        Words("units alike"),
+        Number("least Cpk"),
+        Words("of"),
+        Words("batches that differ"),
+        Words("control charts"),
+    ];
+    sortable(body, "", &columns, |body| models.iter().for_each(|model| model_row(body, model)));
+}
+
+fn model_row(body: &mut String, IndexedModel { report, has_signals }: &IndexedModel) {
+    let capability = report.parameters.iter().filter_map(|p| Some((p.name.as_str(), p.capability.as_ref()?.cpk)));
+    let least = capability.min_by(|a, b| a.1.total_cmp(&b.1));
+    let differ: Vec<&str> = report.parameters.iter().filter(|p| p.batches_differ).map(|p| p.name.as_str()).collect();
+    let _ = writeln!(
+        body,
+        "<tr><th scope=\"row\"><a href=\"{}\">{}</a></th><td class=\"number\">{}</td><td class=\"number\">{}</td>{}\
              <td class=\"number\">{}</td><td>{}</td><td>{}</td>{}</tr>",
-            PageKind::Model.file(&[&report.unit_model]),
-            Escaped(&report.unit_model),
-            report.units,
-            report.sessions,
-            if report.is_sound && !report.is_tested {
-                not_tested()
-            } else {
-                verdict(report.is_sound, "alike", "not alike")
-            },
-            least.map_or_else(String::new, |(_, cpk)| format!("{cpk:.2}")),
-            Escaped(least.map_or("", |(name, _)| name)),
-            Escaped(&differ.join(", ")),
-            signals(*has_signals),
-        );
-    }
-    body.push_str("</tbody></table></div>\n");
+        PageKind::Model.file(&[&report.unit_model]),
+        Escaped(&report.unit_model),
+        report.units,
+        report.sessions,
+        if report.is_sound && !report.is_tested {
+            not_tested()
+        } else {
+            verdict(report.is_sound, "alike", "not alike")
+        },
+        least.map_or_else(String::new, |(_, cpk)| format!("{cpk:.2}")),
+        Escaped(least.map_or("", |(name, _)| name)),
+        Escaped(&differ.join(", ")),
+        signals(*has_signals),
+    );
 }
 
 fn stations_table(body: &mut String, stations: &[IndexedStation]) {
     if stations.is_empty() {
         return;
     }
-    body.push_str(
-        "<h2>Stations</h2>\n<div class=\"scroll\"><table class=\"sortable\"><thead><tr><th scope=\"col\">station</th>\
-         <th scope=\"col\" class=\"number\">calibrations</th><th scope=\"col\" class=\"number\">units</th><th scope=\"col\">first</th>\
-         <th scope=\"col\">last</th><th scope=\"col\">machine</th><th scope=\"col\">changed</th><th scope=\"col\">control charts</th></tr></thead>\
-         <tbody>\n",
-    );
-    for IndexedStation { report, has_signals } in stations {
-        let name = if report.station.is_empty() { "without a name" } else { &report.station };
-        let changed: Vec<&str> = report.parameters.iter().filter(|p| p.changes).map(|p| p.name.as_str()).collect();
-        let _ = writeln!(
-            body,
-            "<tr><th scope=\"row\"><a href=\"{}\">{}</a></th><td class=\"number\">{}</td><td class=\"number\">{}</td><td>{}</td><td>{}</td>{}\
+    body.push_str("<h2>Stations</h2>\n");
+    let columns = [
+        Words("station"),
+        Number("calibrations"),
+        Number("units"),
+        Words("first"),
+        Words("last"),
+        Words("machine"),
+        Words("changed"),
+        Words("control charts"),
+    ];
+    sortable(body, "", &columns, |body| stations.iter().for_each(|station| station_row(body, station)));
+}
+
+fn station_row(body: &mut String, IndexedStation { report, has_signals }: &IndexedStation) {
+    let name = if report.station.is_empty() { "without a name" } else { &report.station };
+    let changed: Vec<&str> = report.parameters.iter().filter(|p| p.changes).map(|p| p.name.as_str()).collect();
+    let _ = writeln!(
+        body,
+        "<tr><th scope=\"row\"><a href=\"{}\">{}</a></th><td class=\"number\">{}</td><td class=\"number\">{}</td><td>{}</td><td>{}</td>{}\
              <td>{}</td>{}</tr>",
-            PageKind::Station.file(&[&report.station]),
-            Escaped(name),
-            report.sessions,
-            report.units,
-            report.first,
-            report.last,
-            report.is_steady.map_or_else(not_tested, |is_steady| verdict(is_steady, "steady", "not steady")),
-            Escaped(&changed.join(", ")),
-            signals(*has_signals),
-        );
-    }
-    body.push_str("</tbody></table></div>\n");
+        PageKind::Station.file(&[&report.station]),
+        Escaped(name),
+        report.sessions,
+        report.units,
+        report.first,
+        report.last,
+        report.is_steady.map_or_else(not_tested, |is_steady| verdict(is_steady, "steady", "not steady")),
+        Escaped(&changed.join(", ")),
+        signals(*has_signals),
+    );
 }
 
 /// No test, no colour.

@@ -7,6 +7,8 @@ use centrical_session::{HistoryLine, UnitsHistoryReport};
 
 use super::frame::{linked_serial, verdict};
 use crate::plot::Escaped;
+use crate::render::frame::Column::{Number, Words};
+use crate::render::frame::sortable;
 use crate::terminal::finding_mark;
 
 /// A unit in a list.
@@ -55,28 +57,26 @@ impl ListedUnit {
 /// A table of `units`, with what `report` finds of each where it is of one model.
 pub(super) fn units_table(body: &mut String, units: &[ListedUnit], report: Option<&UnitsHistoryReport>) {
     let found = report.map(findings).unwrap_or_default();
-    let (kind, last) = if report.is_some() { ("", "found") } else { ("<th scope=\"col\">model</th>", "") };
-    let _ = writeln!(
-        body,
-        "<h2>Its units</h2>\n<div class=\"scroll\"><table class=\"sortable\"><thead><tr><th scope=\"col\">serial</th>{kind}\
-         <th scope=\"col\" class=\"number\">calibrations</th><th scope=\"col\">first</th><th scope=\"col\">last</th>\
-         <th scope=\"col\">last verdict</th><th scope=\"col\">{last}</th></tr></thead><tbody>"
-    );
-    for unit in units {
-        let model = if report.is_some() { String::new() } else { format!("<td>{}</td>", Escaped(&unit.model)) };
-        let found = found.get(unit.serial.as_str()).map_or_else(String::new, |marks| marks.join(", "));
-        let _ = writeln!(
-            body,
-            "<tr><th scope=\"row\">{}</th>{model}<td class=\"number\">{}</td><td>{}</td><td>{}</td>{}<td>{}</td></tr>",
-            unit.linked,
-            unit.calibrations,
-            Escaped(&unit.first),
-            Escaped(&unit.last),
-            verdict(unit.is_last_acceptable, "acceptable", "not acceptable"),
-            Escaped(&found)
-        );
-    }
-    body.push_str("</tbody></table></div>\n");
+    let (kind, last) = if report.is_some() { (None, "found") } else { (Some(Words("model")), "") };
+    let others = [Number("calibrations"), Words("first"), Words("last"), Words("last verdict"), Words(last)];
+    let columns: Vec<_> = std::iter::once(Words("serial")).chain(kind).chain(others).collect();
+    body.push_str("<h2>Its units</h2>\n");
+    sortable(body, "", &columns, |body| {
+        for unit in units {
+            let model = if report.is_some() { String::new() } else { format!("<td>{}</td>", Escaped(&unit.model)) };
+            let found = found.get(unit.serial.as_str()).map_or_else(String::new, |marks| marks.join(", "));
+            let _ = writeln!(
+                body,
+                "<tr><th scope=\"row\">{}</th>{model}<td class=\"number\">{}</td><td>{}</td><td>{}</td>{}<td>{}</td></tr>",
+                unit.linked,
+                unit.calibrations,
+                Escaped(&unit.first),
+                Escaped(&unit.last),
+                verdict(unit.is_last_acceptable, "acceptable", "not acceptable"),
+                Escaped(&found)
+            );
+        }
+    });
 }
 
 /// What was found of units, by their serial numbers.
