@@ -144,7 +144,7 @@ pub(super) const IN_RUSSIAN: ComparisonMessages = ComparisonMessages {
     position: "delta[n]: в положении n",
     pair: "dR[A]: в паре положений A",
     or: " или ",
-    plot: "Разности в долях расширенных неопределённостей",
+    plot: "Нормированные разности E_n",
     plot_axis: "коэффициент, в порядке таблицы",
     plot_less: |second, first| format!("{second} минус {first}"),
 };

@@ -58,8 +58,10 @@ fn one_pair(screen: &mut Screen, report: &ComparisonReport, pair: &PairCompariso
     if let (Some(chi_squared), Some(probability)) = (pair.chi_squared, pair.probability) {
         let count = pair.degrees_of_freedom;
         screen.say(2, &(messages.beyond)(beyond, count));
-        let numbers = [format!("{chi_squared:.1}"), chance(probability)].map(|number| language.plain(number));
-        screen.say(2, &(messages.together)(count, &numbers[0], &numbers[1]));
+        let chi_squared = language.plain(format!("{chi_squared:.1}"));
+        let chance =
+            if language == Language::English { chance(probability) } else { language.probability(probability) };
+        screen.say(2, &(messages.together)(count, &chi_squared, &chance));
     }
 }
 
