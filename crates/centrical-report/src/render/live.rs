@@ -116,7 +116,10 @@ impl Panel<'_> {
             write!(out, ": {}", if acceptable { words.acceptable } else { words.not_acceptable })?;
         }
         out.push_str("</p>");
-        if let Some(note) = &live.note {
+        if let Some(file) = &live.awaited {
+            write!(out, "<p lang=\"{}\">{} {}</p>", self.language.code(), words.waiting_for, Escaped(file))?;
+        } else if let Some(note) = &live.note {
+            // The message of an error.
             write!(out, "<p lang=\"en\">{}</p>", Escaped(note))?;
         }
         out.push_str("</section>\n");

@@ -33,6 +33,9 @@ pub struct LiveReport {
     pub status: LiveStatus,
     /// What is waited for, or why the watch ended.
     pub note: Option<String>,
+    /// The file that is waited for, if the note is of one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub awaited: Option<String>,
     /// When this was written.
     pub written: f64,
     /// Seconds between two looks at the folder.

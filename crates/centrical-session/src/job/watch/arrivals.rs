@@ -1,9 +1,10 @@
 //! Which plateaus of a session folder have arrived while it is being filled.
 
 use std::collections::BTreeMap;
+use std::fmt::{self, Display, Formatter};
 use std::fs;
 use std::ops::ControlFlow;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, SystemTime};
 
@@ -45,7 +46,25 @@ pub struct Watch<'s> {
     seen: Option<Look>,
     /// The record of that mounting, or of the one before until it comes.
     growth: Option<Growth>,
-    note: Option<String>,
+    note: Option<Note>,
+}
+
+/// Why a look at a folder brought nothing.
+#[derive(Debug, Clone, PartialEq, Eq)]
+enum Note {
+    /// A file has not come.
+    WaitingFor(PathBuf),
+    /// A record cannot be read yet, and why.
+    NotYet(String),
+}
+
+impl Display for Note {
+    fn fmt(&self, f: &mut Formatter) -> fmt::Result {
+        match self {
+            Self::WaitingFor(file) => write!(f, "waiting for {}", file.display()),
+            Self::NotYet(why) => write!(f, "not yet: {why}"),
+        }
+    }
 }
 
 /// What a record looks like from outside.
@@ -95,8 +114,16 @@ impl<'s> Watch<'s> {
     }
 
     /// What is waited for, if something is.
-    pub fn note(&self) -> Option<&str> {
-        self.note.as_deref()
+    pub fn note(&self) -> Option<String> {
+        self.note.as_ref().map(Note::to_string)
+    }
+
+    /// The file that is waited for, if the note is of one.
+    pub fn awaited(&self) -> Option<&Path> {
+        match self.note.as_ref()? {
+            Note::WaitingFor(file) => Some(file),
+            Note::NotYet(_) => None,
+        }
     }
 
     /// What a look would find if a record that has just changed counted as finished, for who looks only once.
@@ -156,7 +183,7 @@ impl<'s> Watch<'s> {
             while is_wanted(self.finished.len()) && self.look_at_current(stop, &mut arrivals)? {}
         }
         if let Some(file) = rests::awaited(self.session).filter(|_| self.has_arm()) {
-            self.note = Some(format!("waiting for {}", file.display()));
+            self.note = Some(Note::WaitingFor(file.to_owned()));
         }
         let arrived = &mut self.arrived;
         arrivals.retain(|now| arrived.get(&now.set_point).is_none_or(|before| reads_otherwise(before, now)));
@@ -180,7 +207,7 @@ impl<'s> Watch<'s> {
             }
             match self.read(mounting, look, stop).and_then(|record| self.whole(mounting, &record)) {
                 Err(Error::Stopped(_)) => return Ok(()),
-                Err(error) if !look.left_alone => self.note = Some(format!("not yet: {error}")),
+                Err(error) if !look.left_alone => self.note = Some(Note::NotYet(error.to_string())),
                 Err(error) => return Err(error),
                 Ok((reduced, _)) => {
                     self.finished[mounting] = reduced.clone();
@@ -202,7 +229,7 @@ impl<'s> Watch<'s> {
             return self.session.record(mounting).map(|_| false);
         };
         let Some(look) = self.look_of(mounting, file) else {
-            self.note = Some(format!("waiting for {}", file.display()));
+            self.note = Some(Note::WaitingFor(file.to_owned()));
             return Ok(false);
         };
         match &mut self.growth {
@@ -227,7 +254,7 @@ impl<'s> Watch<'s> {
         });
         match reduced {
             Err(Error::Stopped(_)) => self.seen = None,
-            Err(error) if !look.left_alone => self.note = Some(format!("not yet: {error}")),
+            Err(error) if !look.left_alone => self.note = Some(Note::NotYet(error.to_string())),
             Err(error) => return Err(error),
             Ok(None) => {}
             Ok(Some((reduced, complete))) => {

@@ -55,6 +55,7 @@ impl<'a> Board<'a> {
             unit_serial: session.unit_serial.clone(),
             status: LiveStatus::Following,
             note: None,
+            awaited: None,
             written: 0.0,
             interval: interval.as_secs_f64(),
             arrived: 0,
@@ -128,7 +129,7 @@ impl<'a> Board<'a> {
     ///
     /// # Errors
     /// [`Error`] when the folder does not take it.
-    pub fn write(&mut self, watch: &Watch, status: LiveStatus, note: Option<&str>) -> Result<(), Error> {
+    pub fn write(&mut self, watch: &Watch, status: LiveStatus) -> Result<(), Error> {
         let session = self.session;
         self.report.record = watch.growth().map(|growth| growth.live(self.frozen_after));
         let mounting = watch.growth().map_or(0, |growth| growth.mounting);
@@ -140,7 +141,8 @@ impl<'a> Board<'a> {
         };
         self.report.speeds = watch.speeds().iter().map(speed).collect();
         self.report.ends = self.end();
-        self.write_as(status, note)
+        self.report.awaited = watch.awaited().map(|file| file.display().to_string());
+        self.put(status, watch.note())
     }
 
     /// Writes it with what the watch does.
@@ -148,8 +150,13 @@ impl<'a> Board<'a> {
     /// # Errors
     /// [`Error`] when the folder does not take it.
     pub fn write_as(&mut self, status: LiveStatus, note: Option<&str>) -> Result<(), Error> {
+        self.report.awaited = None;
+        self.put(status, note.map(str::to_owned))
+    }
+
+    fn put(&mut self, status: LiveStatus, note: Option<String>) -> Result<(), Error> {
         self.report.status = status;
-        self.report.note = note.map(str::to_owned);
+        self.report.note = note;
         self.report.written = seconds_since_1970(SystemTime::now());
         self.report.write(&self.file)
     }

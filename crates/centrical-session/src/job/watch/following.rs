@@ -165,16 +165,18 @@ impl<'a> Following<'a> {
                 if let Some(standing) = (count > 0).then(|| self.standing()).transpose()?.flatten() {
                     board.show(&standing)?;
                 }
-                board.write(&watch, LiveStatus::Following, watch.note())?;
+                board.write(&watch, LiveStatus::Following)?;
             }
             if watch.is_complete() {
                 // The calibration reads the records anew, and needs the room of what was kept of them.
                 drop(watch);
                 return self.finish(stop, report).map(Some);
             }
-            if watch.note() != note.as_deref() {
-                note = watch.note().map(str::to_owned);
-                note.as_deref().into_iter().for_each(|note| report(WatchEvent::Waiting(note)));
+            if watch.note() != note {
+                note = watch.note();
+                if let Some(note) = &note {
+                    report(WatchEvent::Waiting(note));
+                }
             }
             let frozen = watch.growth().and_then(|growth| Some((growth.file(), growth.frozen(self.request.frozen)?)));
             if let Some((file, age)) = frozen.filter(|_| !is_frozen) {
