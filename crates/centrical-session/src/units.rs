@@ -109,7 +109,9 @@ fn in_derived_unit(quantity: &Quantity, unit: &str, group: Group) -> Result<f64,
     };
     let units: Vec<&str> = known.iter().map(|(name, _)| *name).collect();
     let expected = || format!("a number in {unit} or with a unit (units: {})", units.join(", "));
-    value.ok_or_else(|| NotThatQuantity { found: quantity.to_string(), expected: expected() })
+    value
+        .filter(|value| value.is_finite())
+        .ok_or_else(|| NotThatQuantity { found: quantity.to_string(), expected: expected() })
 }
 
 fn fitting(unit: &str, group: Group) -> impl Iterator<Item = &'static Customary> {

@@ -193,6 +193,8 @@ fn nonsense_is_refused() {
     refused("[recorder]\nrate = 0\n", &["recorder.rate", "found 0", "above 0"]);
     refused("[parameters]\nG9_11 = 1\n", &["[parameters], G9_11", "unknown", "G0_11"]);
     refused("[parameters]\nG1_11 = \"1 ug\"\n", &["[parameters], G1_11", "expected"]);
+    refused("[parameters]\nG1_11 = \"5 ppm\"\n", &["[parameters], G1_11", "\"5 ppm\"", "units: s^2/m, ug/g^2"]);
+    refused("[parameters]\nG1_11 = nan\n", &["[parameters], G1_11", "found NaN"]);
 
     let laboratory = Laboratory::new(TRUTH);
     laboratory.refused(&laboratory.path("nowhere"), &["nowhere", "no such file"]);

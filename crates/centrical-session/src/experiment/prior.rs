@@ -3,14 +3,13 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use centrical::{MeasurementModel, Parameter, PriorError};
+use centrical::{MeasurementModel, PriorError};
 
 use super::form::PriorValue;
 use super::terms::ASKEW;
 use super::toml_path::TomlPath;
 use crate::error::Error;
 use crate::quantity::Quantity;
-use crate::units::in_parameter_unit;
 
 /// How far a standard uncertainty may be from the typical magnitude of its parameter, either way.
 const FIRMEST: f64 = 1e12;
@@ -98,13 +97,7 @@ fn in_si(at: &TomlPath, model: &MeasurementModel, name: &str, quantity: &Quantit
         let unknown = PriorError::Unknown { name: name.to_owned(), example: model.parameters()[0].name.clone() };
         return Err(refusal(at, name, unknown));
     };
-    in_unit_of(at, name, quantity, first)
-}
-
-/// A quantity in the unit of a parameter.
-pub(crate) fn in_unit_of(at: &TomlPath, key: &str, quantity: &Quantity, parameter: &Parameter) -> Result<f64, Error> {
-    in_parameter_unit(quantity, &parameter.unit, parameter.group)
-        .map_err(|not| at.unexpected(key, not.found, not.expected))
+    at.of_parameter(name, quantity, first)
 }
 
 fn refusal(at: &TomlPath, name: &str, error: PriorError) -> Error {

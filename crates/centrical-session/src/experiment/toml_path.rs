@@ -2,8 +2,11 @@
 
 use std::path::Path;
 
+use centrical::Parameter;
+
 use crate::error::{Error, Place};
 use crate::quantity::{Dimension, Quantity};
+use crate::units::in_parameter_unit;
 
 /// A table of the experiment file.
 #[derive(Debug, Clone)]
@@ -45,6 +48,12 @@ impl<'a> TomlPath<'a> {
     /// The value of `key` in SI.
     pub fn finite(&self, key: &str, quantity: &Quantity, dimension: Dimension) -> Result<f64, Error> {
         quantity.si(dimension).map_err(|not| self.unexpected(key, not.found, not.expected))
+    }
+
+    /// The value of `key` in the SI unit of a parameter.
+    pub fn of_parameter(&self, key: &str, quantity: &Quantity, parameter: &Parameter) -> Result<f64, Error> {
+        in_parameter_unit(quantity, &parameter.unit, parameter.group)
+            .map_err(|not| self.unexpected(key, not.found, not.expected))
     }
 
     /// A point of three coordinates [m], each of `most` or less: beyond it a unit was mistaken.

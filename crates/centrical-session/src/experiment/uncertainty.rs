@@ -5,7 +5,6 @@ use std::path::Path;
 
 use centrical::{Course, Effect, ErrorModel, Experiment, Kind, Law, Parameter, Rival, TypeB};
 
-use super::prior;
 use super::speeds::Speeds;
 use super::toml_path::TomlPath;
 use crate::error::{Error, quoted};
@@ -129,7 +128,7 @@ fn bound(at: &TomlPath, key: &str, quantity: &Quantity, unknown: &Parameter) -> 
             let [size, place] = [size, place].map(|part| Quantity::Text(part.trim().to_owned()));
             at.finite(key, &size, of_size)? / at.finite(key, &place, of_place)?.powi(power)
         }
-        _ => prior::in_unit_of(at, key, quantity, unknown)?,
+        _ => at.of_parameter(key, quantity, unknown)?,
     };
     let largest = BEYOND_REASON * unknown.typical;
     if value > 0.0 && value <= largest {

@@ -11,7 +11,7 @@ use serde::Deserialize;
 use super::equipment::{CounterTable, HandTable, MachineTable, RecorderTable, SensorTable, TachometerTable, equipment};
 use crate::error::Error;
 use crate::experiment::{Session, TomlPath};
-use crate::quantity::{Dimension, Quantity};
+use crate::quantity::Quantity;
 use crate::settings::{from_toml, read_settings};
 
 /// What is simulated: the model with its unknowns, their true values, and the equipment.
@@ -127,14 +127,7 @@ fn values(
             let expected = format!("one of {}, or of an extension such as elastic_speed_1[..]", known.join(", "));
             return Err(at.unexpected(name, "an unknown parameter", expected));
         };
-        let dimension = match parameters[j].unit.as_str() {
-            "rad" => Dimension::Angle,
-            "m" => Dimension::Length,
-            "m/s^2" => Dimension::Acceleration,
-            // Plain numbers in the parameter's own SI unit.
-            _ => Dimension::Ratio,
-        };
-        values[j] = at.finite(name, quantity, dimension)?;
+        values[j] = at.of_parameter(name, quantity, &parameters[j])?;
     }
     Ok(values)
 }
