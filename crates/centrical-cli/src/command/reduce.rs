@@ -31,8 +31,8 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let session = Session::read(&arguments.session)?;
     let bar = progress::reading(&session, arguments.printing);
     let (session, reduced) = reduce_without_inputs(&session, &progress::on(&bar))?;
+    write_reduced(&session, &reduced, None, arguments.format.into(), &arguments.out, &progress::on(&bar))?;
     bar.finish_and_clear();
-    write_reduced(&session, &reduced, None, arguments.format.into(), &arguments.out)?;
     let samples: u64 = reduced.plateaus.iter().map(|plateau| plateau.samples).sum();
     let text = || {
         let mut screen = Screen::default();

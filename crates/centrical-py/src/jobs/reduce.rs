@@ -17,7 +17,7 @@ pub fn reduce(py: Python, session: GivenSession, out: PathBuf, format: &str, sho
         let session = session.read()?;
         work.expect(2 * session.record_bytes());
         let (session, reduced) = reduce_without_inputs(&session, &|bytes| work.advance(bytes))?;
-        write_reduced(&session, &reduced, None, format, &out)?;
+        write_reduced(&session, &reduced, None, format, &out, &|bytes| work.advance(bytes))?;
         ReductionReport::of(&session, &reduced, &out).to_json()
     })
 }

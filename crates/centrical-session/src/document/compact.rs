@@ -41,7 +41,7 @@ impl CalibrationResult {
             objections: objections.iter().map(|objection| ObjectionName::from(objection).word().to_owned()).collect(),
             parameters: of_parameters(|p| p.name.clone()),
             units: of_parameters(|p| p.unit.clone()),
-            groups: of_parameters(|p| p.group.name().to_owned()),
+            groups: self.parameters.iter().map(|p| p.group).collect(),
             values: self.parameters.iter().map(|p| p.value.unwrap_or(f64::NAN)).collect(),
             standard_uncertainties: self.standard_uncertainties(),
             covariance,

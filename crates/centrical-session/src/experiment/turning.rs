@@ -2,6 +2,7 @@
 
 use centrical::reduction::{Arc, PlateauMean};
 use serde::{Deserialize, Serialize};
+use toml_edit::InlineTable;
 
 use super::form::TurningTable;
 use super::toml_path::TomlPath;
@@ -59,11 +60,15 @@ impl Turning {
     }
 
     /// As an experiment file states it, every number to its last digit.
-    pub(crate) fn inline_table(&self) -> String {
+    pub(crate) fn inline_table(&self) -> InlineTable {
         let Self { arcs, share, rate, radius, acceleration } = self;
-        format!(
-            "{{ arcs = {arcs}, share = {share:?}, rate = \"{rate:?} rad/s\", radius = \"{radius:?} m\", acceleration = \"{acceleration:?} m/s^2\" }}"
-        )
+        let mut table = InlineTable::new();
+        table.insert("arcs", i64::try_from(*arcs).unwrap_or(i64::MAX).into());
+        table.insert("share", (*share).into());
+        table.insert("rate", format!("{rate:?} rad/s").into());
+        table.insert("radius", format!("{radius:?} m").into());
+        table.insert("acceleration", format!("{acceleration:?} m/s^2").into());
+        table
     }
 
     /// As a table states it.

@@ -2,13 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
-use centrical::unwatched;
+use centrical::OnProgress;
 use centrical_table::{TableFormat, claim_folder, refuse_inputs, write_whole};
 use toml_edit::{DocumentMut, InlineTable, Item, TableLike, Value, value};
 
 use super::calibrate::calibrate_reduced;
 use crate::document::{CalibrationResult, Method, RecordFindings};
-use crate::error::{Error, Place};
+use crate::error::{Error, ErrorKind, Place};
 use crate::experiment::{
     EXPERIMENT_FILE, PlateauMean, RestTable, Session, SpeedSource, refuse_another_session, write_attitudes,
     write_plateaus, write_plateaus_parquet,
@@ -24,16 +24,17 @@ const RESTS: [&str; 2] = ["rests.csv", "attitudes.csv"];
 
 /// Writes the reduced session into `folder`: the table of plateaus first, and `experiment.toml`, which names it, last.
 /// Calibrating it gives the numbers that calibrating the records gives. `result` is that of the exact method, where it is at hand: without it the
-/// session is calibrated for what the records show beside their means.
+/// session is calibrated for what the records show beside their means, and `progress` is called with 0 after every step.
 ///
 /// # Errors
-/// [`Error`] if the folder is that of a session with records or of another unit, the session's own at that, or does not take the files.
+/// [`Error::Stopped`]; [`Error`] if the folder is that of a session with records or of another unit, the session's own at that, or does not take the files.
 pub fn write_reduced(
     session: &Session,
     reduced: &Reduced,
     result: Option<&CalibrationResult>,
     format: TableFormat,
     folder: &Path,
+    progress: OnProgress,
 ) -> Result<(), Error> {
     let _claim = claim_folder(folder)?;
     let experiment_file = folder.join(EXPERIMENT_FILE);
@@ -58,7 +59,9 @@ pub fn write_reduced(
     let name = (!session.mountings.is_empty()).then_some(name);
     let mut document = editable(&session.file, &session.experiment_text()?)?;
     rewrite(&mut document, session, name, of_plateaus.then_some(session.speeds.set_uncertainty));
-    if let Some(findings) = session.plateaus.is_none().then(|| findings(session, reduced, result)).flatten() {
+    if session.plateaus.is_none()
+        && let Some(findings) = findings(session, reduced, result, progress)?
+    {
         document.insert("record_findings", value(findings.to_json()?));
     }
     if let Some(noise) = reduced.reading_noise().filter(|_| session.type_b.resolution > 0.0)
@@ -80,10 +83,19 @@ pub fn write_reduced(
 
 /// What calibrating finds in the records beside the means: drifts over plateaus, and speeds that contradict the schedule. None of a session that
 /// cannot be calibrated.
-fn findings(session: &Session, reduced: &Reduced, result: Option<&CalibrationResult>) -> Option<RecordFindings> {
-    match result {
-        Some(result) => RecordFindings::of(result),
-        None => RecordFindings::of(&calibrate_reduced(session, reduced, Method::Exact, &unwatched).ok()?),
+fn findings(
+    session: &Session,
+    reduced: &Reduced,
+    result: Option<&CalibrationResult>,
+    progress: OnProgress,
+) -> Result<Option<RecordFindings>, Error> {
+    if let Some(result) = result {
+        return Ok(RecordFindings::of(result));
+    }
+    match calibrate_reduced(session, reduced, Method::Exact, progress) {
+        Ok(result) => Ok(RecordFindings::of(&result)),
+        Err(error) if error.kind() == ErrorKind::Input => Ok(None),
+        Err(error) => Err(error),
     }
 }
 
@@ -136,8 +148,8 @@ fn rename_rests(n: usize, tumble: &mut dyn TableLike, table: &RestTable) {
     if table.noise_at_most > 1.0 {
         tumble.insert("noise_at_most", value(table.noise_at_most));
     }
-    if let Some(turning) = table.turning.and_then(|turning| turning.inline_table().parse::<Value>().ok()) {
-        tumble.insert("turning", value(turning));
+    if let Some(turning) = table.turning {
+        tumble.insert("turning", value(turning.inline_table()));
     }
     if tumble.contains_key("attitudes") {
         tumble.insert("attitudes", value(attitudes));

@@ -75,8 +75,7 @@ fn of_numbers(row: &Row) -> Option<Contradiction> {
 
 /// Units are those of the groups that have one.
 fn of_units(row: &Row) -> Option<Contradiction> {
-    let unit_of = |group: &str| {
-        let group = Group::ALL.into_iter().find(|known| known.name() == group)?;
+    let unit_of = |group: Group| {
         Some(match group {
             Group::Bias => "m/s^2",
             Group::Scale | Group::Misalignment => "1",
@@ -89,7 +88,7 @@ fn of_units(row: &Row) -> Option<Contradiction> {
     };
     let mut all = row.units.iter().zip(&row.groups).zip(&row.parameters);
     all.find_map(|((unit, group), name)| {
-        let expected = unit_of(group).filter(|expected| expected != unit)?;
+        let expected = unit_of(*group).filter(|expected| expected != unit)?;
         Some(("units", format!("{unit:?} of {name}"), format!("{expected:?}")))
     })
 }

@@ -5,17 +5,12 @@ use std::path::{Path, PathBuf};
 use centrical_table::{Cell, TypedReader, TypedWriter};
 
 use super::contradiction::contradiction;
-use super::row::{Row, Status, sha256};
-use super::schema::{
-    Depth, ENTRIES, ROW_VERSION, ROWS_SCHEMA, Read, SCHEMA_NOTE, STATUS, STATUSES, VERSION, cells, columns,
-};
+use super::row::{Row, sha256};
+use super::schema::{Depth, ENTRIES, ROWS_SCHEMA, Read, SCHEMA_NOTE, VERSION, cells, columns, misshapen};
 use crate::error::{Error, Place, quoted};
 
 /// Rows of a row group: a MB of covariances, which is what a reader holds of a part.
 const GROUP: usize = 128;
-
-/// The first version of a row that this program does not know.
-const VERSION_BEYOND: i64 = VERSION + 1;
 
 /// A part, open.
 pub(super) struct Part {
@@ -89,14 +84,8 @@ impl Part {
                 rows.resize_with(cells.len(), || Some(Row::default()));
             }
             for (at, (row, cell)) in rows.iter_mut().zip(cells).enumerate() {
-                if let (ROW_VERSION, Cell::Integer(version @ VERSION_BEYOND..)) = (entry.column.name, &cell) {
-                    let expected = format!("{VERSION} or an older one; a newer program reads newer ones");
-                    return Err(self.wrong(group, at, ROW_VERSION, version.to_string(), expected));
-                }
-                if let (STATUS, Cell::Text(word)) = (entry.column.name, &cell)
-                    && Status::named(word).is_none()
-                {
-                    return Err(self.wrong(group, at, STATUS, quoted(word.as_bytes()), STATUSES.to_owned()));
+                if let Some((found, expected)) = misshapen(entry.column.name, &cell) {
+                    return Err(self.wrong(group, at, entry.column.name, found, expected));
                 }
                 if let Some(row) = row {
                     (entry.set)(row, Read(cell));

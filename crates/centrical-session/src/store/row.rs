@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 
+use centrical::Group;
 use serde::Serialize;
 use sha2::{Digest, Sha256};
 
@@ -118,7 +119,7 @@ pub struct Row {
     /// Their units, SI.
     pub units: Vec<String>,
     /// Their groups.
-    pub groups: Vec<String>,
+    pub groups: Vec<Group>,
     /// Estimates, SI; NaN where not estimable.
     pub values: Vec<f64>,
     /// Combined standard uncertainties, SI; NaN where not estimable.

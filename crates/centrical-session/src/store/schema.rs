@@ -1,8 +1,10 @@
 //! The columns of a row in a part, and how a row becomes cells and comes from them: schema `centrical-rows/2`.
 
+use centrical::Group;
 use centrical_table::{Cell, Kind, TypedColumn};
 
 use super::row::{Row, RowPrior, RowTerm, SharedInfluence, Status};
+use crate::error::quoted;
 
 /// Name of the schema's present version.
 pub const ROWS_SCHEMA: &str = "centrical-rows/2";
@@ -10,15 +12,17 @@ pub const ROWS_SCHEMA: &str = "centrical-rows/2";
 /// Key in the footer of a part under which the schema stands.
 pub(super) const SCHEMA_NOTE: &str = "centrical_schema";
 
-/// The column with the version of a row.
-pub(super) const ROW_VERSION: &str = "row_version";
-
-/// The column with the word for whether a calibration was done, and the words there are.
-pub(super) const STATUS: &str = "status";
-pub(super) const STATUSES: &str = "\"done\" or \"failed\"";
+/// The columns whose cells have a form of their own, see [`misshapen`].
+const KEY: &str = "key";
+const ROW_VERSION: &str = "row_version";
+const STATUS: &str = "status";
+const GROUPS: &str = "groups";
 
 /// The schema's present version.
 pub(super) const VERSION: i64 = 2;
+
+/// The first version of a row that this program does not know.
+const VERSION_BEYOND: i64 = VERSION + 1;
 
 /// How much of a row is read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default)]
@@ -49,7 +53,7 @@ pub(super) struct Read(pub Cell);
 /// The columns in the order of the file. A column may be added; none is taken away.
 #[rustfmt::skip]
 pub(super) const ENTRIES: &[Entry] = &[
-    Entry { column: TypedColumn { name: "key", kind: Kind::Text }, depth: Depth::Summary, get: |r| text(&r.key), set: |r, c| r.key = c.text() },
+    Entry { column: TypedColumn { name: KEY, kind: Kind::Text }, depth: Depth::Summary, get: |r| text(&r.key), set: |r, c| r.key = c.text() },
     Entry { column: TypedColumn { name: ROW_VERSION, kind: Kind::Integer }, depth: Depth::Summary, get: |_| Cell::Integer(VERSION), set: |_, _| () },
     Entry { column: TypedColumn { name: STATUS, kind: Kind::Text }, depth: Depth::Summary, get: |r| text(r.status.word()), set: |r, c| r.status = Status::named(&c.text()).unwrap_or_default() },
     Entry { column: TypedColumn { name: "message", kind: Kind::Text }, depth: Depth::Summary, get: |r| text(&r.failure.message), set: |r, c| r.failure.message = c.text() },
@@ -79,7 +83,7 @@ pub(super) const ENTRIES: &[Entry] = &[
     Entry { column: TypedColumn { name: "priors_known", kind: Kind::Truth }, depth: Depth::Summary, get: |r| Cell::Truth(r.priors_known), set: |r, c| r.priors_known = c.0 == Cell::Truth(true) },
     Entry { column: TypedColumn { name: "parameters", kind: Kind::Texts }, depth: Depth::Values, get: |r| Cell::Texts(r.parameters.clone()), set: |r, c| r.parameters = c.texts() },
     Entry { column: TypedColumn { name: "units", kind: Kind::Texts }, depth: Depth::Values, get: |r| Cell::Texts(r.units.clone()), set: |r, c| r.units = c.texts() },
-    Entry { column: TypedColumn { name: "groups", kind: Kind::Texts }, depth: Depth::Values, get: |r| Cell::Texts(r.groups.clone()), set: |r, c| r.groups = c.texts() },
+    Entry { column: TypedColumn { name: GROUPS, kind: Kind::Texts }, depth: Depth::Values, get: |r| Cell::Texts(r.groups.iter().map(|g| g.name().to_owned()).collect()), set: |r, c| r.groups = c.texts().iter().filter_map(|name| group(name)).collect() },
     Entry { column: TypedColumn { name: "values", kind: Kind::Numbers }, depth: Depth::Values, get: |r| Cell::Numbers(r.values.clone()), set: |r, c| r.values = c.numbers() },
     Entry { column: TypedColumn { name: "standard_uncertainties", kind: Kind::Numbers }, depth: Depth::Values, get: |r| Cell::Numbers(r.standard_uncertainties.clone()), set: |r, c| r.standard_uncertainties = c.numbers() },
     Entry { column: TypedColumn { name: "output_unit", kind: Kind::Text }, depth: Depth::Values, get: |r| text(&r.output_unit), set: |r, c| r.output_unit = c.text() },
@@ -106,6 +110,39 @@ pub(super) fn columns() -> Vec<TypedColumn> {
 /// The cells of a row.
 pub(super) fn cells(row: &Row) -> Vec<Cell> {
     ENTRIES.iter().map(|entry| (entry.get)(row)).collect()
+}
+
+/// What was found in a cell that cannot be read, and what was expected there.
+pub(super) fn misshapen(column: &str, cell: &Cell) -> Option<(String, String)> {
+    let of_word = |word: &String, expected: String| Some((quoted(word.as_bytes()), expected));
+    match (column, cell) {
+        (KEY, Cell::Text(key)) if is_key(key) => None,
+        (KEY, Cell::Text(key)) => of_word(key, KEY_FORM.to_owned()),
+        (KEY, _) => Some(("nothing".to_owned(), KEY_FORM.to_owned())),
+        (ROW_VERSION, Cell::Integer(version @ VERSION_BEYOND..)) => {
+            let expected = format!("{VERSION} or an older one; a newer program reads newer ones");
+            Some((version.to_string(), expected))
+        }
+        (STATUS, Cell::Text(word)) if Status::named(word).is_none() => {
+            of_word(word, "\"done\" or \"failed\"".to_owned())
+        }
+        (GROUPS, Cell::Texts(words)) => {
+            let unknown = words.iter().find(|word| group(word).is_none())?;
+            of_word(unknown, format!("one of {}", Group::ALL.map(Group::name).join(", ")))
+        }
+        _ => None,
+    }
+}
+
+/// The form of a key.
+const KEY_FORM: &str = "a SHA-256 of 64 hexadecimal digits, small letters";
+
+fn is_key(text: &str) -> bool {
+    text.len() == 64 && text.bytes().all(|digit| matches!(digit, b'0'..=b'9' | b'a'..=b'f'))
+}
+
+fn group(name: &str) -> Option<Group> {
+    Group::ALL.into_iter().find(|group| group.name() == name)
 }
 
 impl Status {

@@ -75,7 +75,7 @@ fn files_in_memory_give_the_bytes_of_those_on_disk() {
             // The experiment file is in memory, too.
             let (session, reduced) = reduce(&memory, &unwatched).unwrap();
             if on_disk != of_tables {
-                write_reduced(&session, &reduced, None, TableFormat::Csv, &of_tables).unwrap();
+                write_reduced(&session, &reduced, None, TableFormat::Csv, &of_tables, &unwatched).unwrap();
             }
         }
     }
@@ -120,7 +120,7 @@ fn plateaus_from_memory_are_those_of_a_file() {
     let session = Session::read(&example()).unwrap();
     let folder = tempfile::tempdir().unwrap();
     let (_, reduced) = reduce(&session, &unwatched).unwrap();
-    write_reduced(&session, &reduced, None, TableFormat::Csv, folder.path()).unwrap();
+    write_reduced(&session, &reduced, None, TableFormat::Csv, folder.path(), &unwatched).unwrap();
     let from_file = Session::read(folder.path()).unwrap();
     let rows = &from_file.plateaus.as_ref().unwrap().rows;
     let column = |of: &dyn Fn(&PlateauMean) -> f64| rows.iter().map(of).collect::<Vec<f64>>();

@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use centrical::unwatched;
+use centrical::{Group, unwatched};
 use centrical_session::{
     CalibrationResult, Depth, Method, Row, RowPrior, RowTerm, Selection, Session, Store, UnitHistoryReport,
     UnitHistoryRequest, calibrate, read_calibrations, unit_history,
@@ -57,7 +57,7 @@ fn row(n: usize, values: &DVector<f64>, covariance: &DMatrix<f64>) -> Row {
         range: vec![9.8; 3],
         parameters: NAMES.map(|(name, ..)| name.to_owned()).to_vec(),
         units: vec!["1".to_owned(); P],
-        groups: vec!["scale".to_owned(); P],
+        groups: vec![Group::Scale; P],
         values: values.iter().copied().collect(),
         standard_uncertainties: (0..P).map(|j| covariance[(j, j)].sqrt()).collect(),
         covariance: triangle.map(|(i, j)| covariance[(i, j)]).collect(),

@@ -56,7 +56,7 @@ fn a_session_finds_the_rests_that_a_tumble_finds() {
         let (session, reduced) = reduce(&session, &unwatched).unwrap();
         assert_eq!(session.rests().count(), 24);
         let again = folder.path().join(format!("reduced{n}"));
-        write_reduced(&session, &reduced, None, TableFormat::Csv, &again).unwrap();
+        write_reduced(&session, &reduced, None, TableFormat::Csv, &again, &unwatched).unwrap();
         let again = calibrate(&Session::read(&again).unwrap(), Method::Exact, &unwatched).unwrap();
         assert_eq!(again.parameters, expected.parameters);
     }

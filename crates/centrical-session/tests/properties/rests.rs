@@ -22,7 +22,7 @@ fn reduced_example(folder: &Path) -> CalibrationResult {
     let example = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/ta-200");
     let session = Session::read(&example).unwrap();
     let (_, reduced) = reduce(&session, &unwatched).unwrap();
-    write_reduced(&session, &reduced, None, TableFormat::Csv, folder).unwrap();
+    write_reduced(&session, &reduced, None, TableFormat::Csv, folder, &unwatched).unwrap();
     calibrate(&Session::read(folder).unwrap(), Method::Exact, &unwatched).unwrap()
 }
 
@@ -98,7 +98,8 @@ fn rests_and_centrifuge_are_one_fit() {
         assert!((a - b).abs() < 1e-3 * u, "{}: {a} {b}", one.name);
     }
     let again = tempfile::tempdir().unwrap();
-    write_reduced(&session, &reduce(&session, &unwatched).unwrap().1, None, TableFormat::Csv, again.path()).unwrap();
+    write_reduced(&session, &reduce(&session, &unwatched).unwrap().1, None, TableFormat::Csv, again.path(), &unwatched)
+        .unwrap();
     let reduced = calibrate(&Session::read(again.path()).unwrap(), Method::Exact, &unwatched).unwrap();
     assert_eq!(reduced.parameters, together.parameters);
     // A watch knows the centrifuge alone.

@@ -6,6 +6,7 @@ use std::sync::Barrier;
 use std::thread;
 use std::time::Instant;
 
+use centrical::Group;
 use centrical_session::{Depth, Row, RowPrior, RowTerm, Selection, SharedInfluence, Store, unwatched};
 use centrical_table::{Cell, Kind, TypedColumn, TypedWriter};
 use tempfile::TempDir;
@@ -32,7 +33,7 @@ fn row(n: usize, p: usize) -> Row {
         objections: if n.is_multiple_of(3) { vec!["residuals".to_owned()] } else { Vec::new() },
         parameters: (0..p).map(|j| if j == 0 { TERM.to_owned() } else { format!("p_{j}") }).collect(),
         units: vec!["m/s^2".to_owned(); p],
-        groups: vec!["bias".to_owned(); p],
+        groups: vec![Group::Bias; p],
         values: (0..p).map(number).collect(),
         standard_uncertainties: (0..p).map(uncertainty).collect(),
         covariance: (0..p).flat_map(|i| (0..=i).map(move |j| covariance(i, j))).collect(),
@@ -185,6 +186,30 @@ fn an_unknown_status_is_refused() {
     let error = store.rows(Selection::default(), &unwatched).unwrap().next().unwrap().unwrap_err().to_string();
     let expected = "part.parquet, row 1, status: found \"tried\", expected \"done\" or \"failed\"";
     assert!(error.contains(expected), "{error}");
+}
+
+/// Two keys that are not hexadecimal are not one key, and a group that this program does not know is not a bias.
+#[test]
+fn unknown_keys_and_groups_are_refused() {
+    let refused = |key: &str, groups: Vec<Cell>, expected: &str| {
+        let folder = TempDir::new().unwrap();
+        let store = Store::create(folder.path()).unwrap();
+        let columns = [("key", Kind::Text), ("parameters", Kind::Texts), ("groups", Kind::Texts)];
+        let columns = columns.map(|(name, kind)| TypedColumn { name, kind });
+        let file = folder.path().join("rows/part.parquet");
+        let mut part = TypedWriter::create(&file, &columns, &[("centrical_schema", "centrical-rows/2")]).unwrap();
+        let names = Cell::Texts(vec!["p".to_owned()]);
+        let row = [Cell::Text(key.to_owned()), names];
+        part.write_group(&[row.into_iter().chain(groups).collect()]).unwrap();
+        part.finish().unwrap();
+        let selection = Selection { depth: Depth::Values, ..Selection::default() };
+        let error = store.rows(selection, &unwatched).unwrap().next().unwrap().unwrap_err().to_string();
+        assert!(error.contains(expected), "{error}");
+    };
+    let of = |group: &str| vec![Cell::Texts(vec![group.to_owned()])];
+    refused("no-key", of("bias"), "row 1, key: found \"no-key\", expected a SHA-256 of 64 hexadecimal digits");
+    refused(&"A".repeat(64), of("bias"), "row 1, key: found ");
+    refused(&"0".repeat(64), of("hysteresis"), "row 1, groups: found \"hysteresis\", expected one of bias, scale, ");
 }
 
 /// Each edit of a row, and the column and the words of the error.

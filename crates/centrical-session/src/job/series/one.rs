@@ -49,7 +49,7 @@ fn try_calibrate(path: &Path, request: &SeriesRequest, progress: OnProgress) -> 
     if request.reduced {
         let exact = (request.method == Method::Exact).then_some(&result);
         let folder = request.out.join("reduced").join(&row.key);
-        write_reduced(&session, &reduced, exact, TableFormat::Csv, &folder)?;
+        write_reduced(&session, &reduced, exact, TableFormat::Csv, &folder, progress)?;
     }
     let hashes = result.inputs.into_iter().map(|input| input.sha256);
     let files = session.files().into_iter().map(Path::to_owned).zip(hashes).collect();

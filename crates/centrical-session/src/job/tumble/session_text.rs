@@ -33,10 +33,9 @@ pub(super) fn session_text(request: &TumbleRequest, coarse: Option<&CoarseScale>
         line(format!("model = {}", toml_text(&request.model)));
     }
     line(format!("serial = {}", toml_text(&request.serial)));
-    match coarse {
-        Some(CoarseScale { scale, bias }) => {
-            let raw = RAW_OUTPUT.into_iter().find(|(_, unit, _)| *unit == request.unit);
-            let (_, unit, key) = raw.unwrap_or(RAW_OUTPUT[0]);
+    let raw = RAW_OUTPUT.into_iter().find(|(_, unit, _)| *unit == request.unit);
+    match coarse.zip(raw) {
+        Some((CoarseScale { scale, bias }, (_, unit, key))) => {
             line(format!("output_unit = \"{unit}\""));
             line(format!("{key} = {{ scale = {:?}, bias = {:?} }}\n", scale.as_slice(), bias.as_slice()));
         }

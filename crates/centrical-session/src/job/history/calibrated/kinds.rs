@@ -52,20 +52,18 @@ pub struct Kinds(HashSet<Arc<Vec<CalibratedParameter>>>);
 impl Kinds {
     /// The list of a row.
     pub fn of(&mut self, row: &Row) -> Arc<Vec<CalibratedParameter>> {
-        let group =
-            |n: usize| Group::ALL.into_iter().find(|group| row.groups.get(n).is_some_and(|name| group.name() == name));
-        let parameter = |(n, name): (usize, &String)| {
-            let group = group(n).unwrap_or(Group::Bias);
+        let parameter = |((name, unit), group): ((&String, &String), &Group)| {
             let term = row.terms.iter().find(|term| term.name == *name);
             CalibratedParameter {
                 name: name.clone(),
-                unit: row.units.get(n).cloned().unwrap_or_default(),
-                group,
-                is_of_unit: group == Group::ProofMass || term.is_some(),
+                unit: unit.clone(),
+                group: *group,
+                is_of_unit: *group == Group::ProofMass || term.is_some(),
                 coefficient: term.and_then(coefficient),
             }
         };
-        let parameters = Arc::new(row.parameters.iter().enumerate().map(parameter).collect::<Vec<_>>());
+        let columns = row.parameters.iter().zip(&row.units).zip(&row.groups);
+        let parameters = Arc::new(columns.map(parameter).collect::<Vec<_>>());
         if let Some(known) = self.0.get(&parameters) {
             return Arc::clone(known);
         }
