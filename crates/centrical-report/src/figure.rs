@@ -44,7 +44,8 @@ pub fn figures(result: &CalibrationResult, language: Language) -> Vec<Figure> {
         .chain(prediction::figure(result, language))
         .chain(correlation)
         .chain(fit::singular_values(result, language))
-        .chain([fit::convergence(result, language), records, fit::stability(result, language)].into_iter().flatten())
+        .chain(fit::convergence(result, language))
+        .chain(records)
         .collect()
 }
 

@@ -34,8 +34,7 @@ pub use self::assessment::{
     LeftOutPlateau, WithoutOutliers,
 };
 pub use self::comparison::{ComparedResultSummary, ComparisonReport, DifferenceSummary, PairComparison};
-pub(crate) use self::compensation::CompensatedFiles;
-pub use self::compensation::{CompensationReport, FirstReading, ReadingsBeyond};
+pub use self::compensation::{COMPENSATION_SCHEMA, CompensationReport, FirstReading, ReadingsBeyond};
 pub use self::documents::{DocumentKind, DocumentsReport, ObjectionName, WrittenDocument};
 pub use self::draft::{DraftReport, LineToFillIn};
 pub(crate) use self::history::FAMILY;
@@ -72,7 +71,7 @@ pub use self::result::{
     MountingPrediction, MountingSummary, NextAttitudeSummary, ObservabilitySummary, OutlyingPlateau, OutputSummary,
     ParameterEstimate, PatternSummary, PlateauSummary, PositionSummary, PriorSummary, Program, RestsOn,
     ResultObjection, RivalSize, RivalSummary, SCHEMA, SessionSummary, SpeedDifference, SpeedFinding, SpeedsSummary,
-    StabilityCurve, TermSummary, ValiditySummary, unit_name,
+    TermSummary, ValiditySummary, unit_name,
 };
 pub use self::series::{FailedSession, SeriesSummary};
 pub use self::simulation::SimulationReport;

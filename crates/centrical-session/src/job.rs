@@ -26,7 +26,7 @@ pub use self::assess::{Assessment, AssessmentRequest, assess};
 pub use self::axes::Axes;
 pub use self::calibrate::{calibrate, calibrate_reduced, calibrate_without};
 pub use self::compare::{ComparisonRequest, compare_results};
-pub use self::compensate::{Compensated, CompensationRequest, FirstOutside, compensate, compensate_record};
+pub use self::compensate::{Compensated, CompensationRequest, compensate, compensate_record};
 pub use self::history::{
     Calibrated, CalibratedParameter, ChartLimits, ChartRequest, ComparedUnits, NoHistory, ParameterLimits, Past,
     RuleSet, UnitHistoryRequest, UnitsHistoryRequest, by_unit, chart, chart_of_one, history_up_to, read_batches,

@@ -60,8 +60,8 @@ pub use document::{
     PatternSummary, PlanReport, PlannedMounting, PlannedPlateau, PlateauDriftVerdict, PlateauSummary, PositionSummary,
     PredictedParameter, PredictionReport, PriorSummary, Program, ReadingNoise, ReasonReport, RemedyReport,
     RepeatedPlateau, RestsOn, ResultObjection, RivalSize, RivalSummary, SCHEMA, SessionDriftVerdict, SessionSummary,
-    SessionTrend, SightReport, SpeedDifference, SpeedFinding, SpeedsSummary, StabilityCurve, StepReport, Subject,
-    TermSummary, TiltSummary, TiltVerdict, ValiditySummary, WatchState, WatchedPlateau, read_history, unit_name,
+    SessionTrend, SightReport, SpeedDifference, SpeedFinding, SpeedsSummary, StepReport, Subject, TermSummary,
+    TiltSummary, TiltVerdict, ValiditySummary, WatchState, WatchedPlateau, read_history, unit_name,
 };
 pub use document::{
     BatchSummary, BatchWithoutUnit, BeyondLimit, CapabilitySummary, ChartKind, ChartReport, ChartRule, ChartSignal,
@@ -77,7 +77,7 @@ pub use experiment::{
 };
 pub use job::{
     Assessment, AssessmentRequest, Axes, ComparisonRequest, Compensated, CompensationRequest, Draft, FillIn,
-    FirstOutside, InitRequest, LiveRequest, MonteCarloCase, MonteCarloRequest, NoiseRequest, PlanRequest, Recorded,
+    InitRequest, LiveRequest, MonteCarloCase, MonteCarloRequest, NoiseRequest, PlanRequest, Recorded,
     SeriesRequest, SettingsForm, Tumble, TumbleRequest, USUAL_LEVELS, USUAL_TIMES, Watch, WatchEnd, WatchEvent,
     WatchProgress, WatchRequest, add_result, add_results, assess, calibrate, calibrate_reduced, calibrate_series,
     calibrate_without, check_store, collect_results, compare_results, compensate, compensate_record, init, list_store,

@@ -59,5 +59,5 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
         screen
     };
     arguments.printing.show(text, || compensated.report(&request, &certificate, &objections).to_json())?;
-    Ok(Outcome::acceptable(compensated.outside == 0 && objections.is_empty()))
+    Ok(Outcome::acceptable(compensated.outside.count == 0 && objections.is_empty()))
 }

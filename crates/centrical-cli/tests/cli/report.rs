@@ -84,29 +84,6 @@ fn the_same_bytes() {
     }
 }
 
-/// A result that has Allan deviations gets their plot; one that has none gets no empty place.
-#[test]
-fn allan_curves_if_they_were_computed() {
-    let copy = calibrated("en");
-    let file = copy.out().join("result.json");
-    assert!(!fs::read_to_string(copy.out().join("report.html")).unwrap().contains("id=\"stability\""));
-    let mut result: serde_json::Value = serde_json::from_slice(&fs::read(&file).unwrap()).unwrap();
-    let curve = |axis: usize| {
-        serde_json::json!({ "axis": axis, "tau": [0.1, 1.0, 10.0], "deviation": [3e-4, 1e-4, 4e-5],
-            "lower": [2e-4, 0.8e-4, 3e-5], "upper": [4e-4, 1.2e-4, 6e-5] })
-    };
-    result["stability"] = (1..=3).map(curve).collect();
-    fs::write(&file, result.to_string()).unwrap();
-    let run = copy.run(&["report", "result.json", "--html", "h.html"]);
-    assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stderr));
-    let page = fs::read_to_string(copy.out().join("h.html")).unwrap();
-    let plot = &page[page.find("<figure id=\"stability\"").unwrap()..];
-    let plot = &plot[..plot.find("</figure>").unwrap()];
-    assert_eq!(plot.matches("class=\"mark\"").count(), 9 + 3, "nine points and three in the legend");
-    assert!(plot.contains("<title>axis 2: 1.0000, 1.0000e-4 (8.0000e-5 .. 1.2000e-4)</title>"));
-    assert!(plot.contains("the level of its lowest stretch is the bias instability."));
-}
-
 /// Verdict first, then the parameters; nothing from the network; every plot with its sentence.
 #[test]
 fn the_page_is_whole_and_alone() {

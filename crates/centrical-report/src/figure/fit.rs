@@ -1,4 +1,4 @@
-//! Plots of the fit: reading errors, residuals, singular values, convergence, stability.
+//! Plots of the fit: reading errors, residuals, singular values, convergence.
 
 use centrical::{Group, STANDARD_GRAVITY};
 use centrical_session::{CalibrationResult, MICRO_G, PlateauSummary};
@@ -154,19 +154,4 @@ pub(super) fn convergence(result: &CalibrationResult, language: Language) -> Opt
         plot = plot.with(Series::line((messages.words.group)(group), points.collect()));
     }
     Some(of_plot("convergence", messages.convergence_caption, plot, language))
-}
-
-/// Allan deviation of each axis, if it was computed.
-pub(super) fn stability(result: &CalibrationResult, language: Language) -> Option<Figure> {
-    let messages = language.messages();
-    let curves = result.stability.as_ref().filter(|curves| !curves.is_empty())?;
-    let axes = (Axis::log(messages.tau_axis), Axis::log(messages.deviation_axis));
-    let mut plot = Plot::new(messages.stability_title, axes.0, axes.1);
-    for curve in curves {
-        let intervals = curve.lower.iter().zip(&curve.upper);
-        let points = curve.tau.iter().zip(&curve.deviation).zip(intervals);
-        let points = points.map(|((tau, value), (low, high))| Point::new(*tau, *value).with_interval(*low, *high));
-        plot = plot.with(Series::line_and_markers(format!("{} {}", messages.axis, curve.axis), points.collect()));
-    }
-    Some(of_plot("stability", messages.stability_caption, plot, language))
 }

@@ -161,11 +161,6 @@ pub(crate) const ENGLISH: Messages = Messages {
     samples: "samples",
     rejected: "rejected",
     time_axis: "time, s",
-    stability_title: "Stability of the reading at rest",
-    tau_axis: "averaging time τ, s",
-    deviation_axis: "Allan deviation, m/s²",
-    stability_caption: "Where the curve falls as the square root of time the noise is white; the level of its \
-        lowest stretch is the bias instability.",
     inputs: "Input files",
     inputs_note: "Files from which the result was made, with the SHA-256 of their bytes.",
     file: "File",

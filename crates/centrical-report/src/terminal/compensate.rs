@@ -19,19 +19,19 @@ pub fn compensation_text(compensated: &Compensated, certificate: &Certificate, o
         "anywhere".to_owned()
     };
     let mut screen = Screen::default();
-    if let Some(first) = &compensated.first_outside {
+    if let Some(first) = &compensated.outside.first {
         let words = format!(
             "{} beyond the range, written as nan, the first at t = {} s: {}",
-            counted(compensated.outside, "reading"),
+            counted(compensated.outside.count, "reading"),
             first.t,
             first.reading.map(g).join(", ")
         );
         screen.marked(Emphasis::NotAcceptable, "NOT ACCEPTABLE", &words);
     }
-    if let Some(first) = &compensated.first_beyond {
+    if let Some(first) = &compensated.beyond.first {
         let words = format!(
             "{} beyond those of the calibration, where its error model is extrapolated, the first at t = {} s: {}",
-            counted(compensated.beyond, "reading"),
+            counted(compensated.beyond.count, "reading"),
             first.t,
             first.reading.map(g).join(", ")
         );
@@ -39,7 +39,7 @@ pub fn compensation_text(compensated: &Compensated, certificate: &Certificate, o
     }
     let words = format!(
         "{} compensated, range {} on each axis; the inverse is unique there, and could be asked for {farthest}",
-        counted(compensated.readings - compensated.outside, "reading"),
+        counted(compensated.readings - compensated.outside.count, "reading"),
         g(range)
     );
     screen.say(0, &words);

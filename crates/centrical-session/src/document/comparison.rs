@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use centrical::Group;
-use centrical::uncertainty::{Comparison, Difference};
+use centrical::uncertainty::Difference;
 use serde::Serialize;
 
 use super::json;
@@ -141,45 +141,26 @@ impl ComparisonReport {
     }
 }
 
-impl PairComparison {
-    /// The first two results with their `comparison` and `values`, as far as the second result and these know them; the rest is for the caller.
+impl DifferenceSummary {
+    /// A difference of a coefficient with this `unit` and `group`, its values in both results, and the years between them.
     pub(crate) fn of(
-        second: &CalibrationResult,
-        comparison: &Comparison,
+        found: &Difference,
+        (unit, group): (&str, Group),
+        [first, second]: [Option<f64>; 2],
         years: Option<f64>,
-        values: impl Fn(&str) -> [Option<f64>; 2],
     ) -> Self {
-        let summary = |d: &Difference| {
-            let parameter = second.parameter(&d.name);
-            let [of_first, of_second] = values(&d.name);
-            DifferenceSummary {
-                name: d.name.clone(),
-                unit: parameter.map_or_else(String::new, |p| p.unit.clone()),
-                group: parameter.map_or(Group::Bias, |p| p.group),
-                first: of_first,
-                second: of_second,
-                difference: d.difference,
-                standard_uncertainty: d.standard_uncertainty,
-                e_n: d.e_n,
-                probability: d.probability,
-                disagrees: d.is_real(),
-                per_year: years.map(|years| d.difference / years),
-            }
-        };
         Self {
-            first: 0,
-            second: 1,
-            same_unit: true,
-            only_in_first: Vec::new(),
-            only_in_second: Vec::new(),
-            by_priors_alone: Vec::new(),
-            same_files: 0,
-            years,
-            differences: comparison.differences.iter().map(summary).collect(),
-            chi_squared: comparison.chi_squared,
-            degrees_of_freedom: comparison.differences.len(),
-            probability: comparison.probability,
-            agree: comparison.agrees(),
+            name: found.name.clone(),
+            unit: unit.to_owned(),
+            group,
+            first,
+            second,
+            difference: found.difference,
+            standard_uncertainty: found.standard_uncertainty,
+            e_n: found.e_n,
+            probability: found.probability,
+            disagrees: found.is_real(),
+            per_year: years.map(|years| found.difference / years),
         }
     }
 }

@@ -1,7 +1,5 @@
 //! What became of a compensated record, as a document: schema `centrical-compensation/1`.
 
-use std::path::Path;
-
 use serde::Serialize;
 
 use super::documents::ObjectionName;
@@ -44,12 +42,20 @@ pub struct CompensationReport {
 }
 
 /// Readings beyond a limit.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 pub struct ReadingsBeyond {
     /// Their number.
     pub count: u64,
     /// The first; null without such readings.
     pub first: Option<FirstReading>,
+}
+
+impl ReadingsBeyond {
+    /// These and later ones.
+    pub(crate) fn add(&mut self, later: Self) {
+        self.count += later.count;
+        self.first = self.first.or(later.first);
+    }
 }
 
 /// The first reading beyond a limit.
@@ -61,35 +67,7 @@ pub struct FirstReading {
     pub reading: [f64; 3],
 }
 
-/// The files of a compensation.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct CompensatedFiles<'a> {
-    pub result: &'a Path,
-    pub record: &'a Path,
-    pub out: &'a Path,
-}
-
 impl CompensationReport {
-    /// A record that is compensated over `range` [m/s^2], which could be `margin` times as large.
-    pub(crate) fn new(files: CompensatedFiles, range: f64, margin: f64) -> Self {
-        let name = |file: &Path| file.display().to_string();
-        Self {
-            schema: COMPENSATION_SCHEMA,
-            program: Program::this(),
-            result: name(files.result),
-            record: name(files.record),
-            out: name(files.out),
-            acceptable: true,
-            objections: Vec::new(),
-            decimals: None,
-            readings: 0,
-            range,
-            largest_range: json::finite(margin * range),
-            outside_range: ReadingsBeyond { count: 0, first: None },
-            beyond_calibration: ReadingsBeyond { count: 0, first: None },
-        }
-    }
-
     /// The text of the document.
     ///
     /// # Errors

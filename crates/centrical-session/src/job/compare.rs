@@ -3,11 +3,11 @@
 use std::collections::HashSet;
 use std::path::Path;
 
-use centrical::uncertainty::{Comparison, Estimates};
+use centrical::uncertainty::{Comparison, Difference, Estimates};
 use nalgebra::{DMatrix, DVector};
 
-use super::history::{Calibrated, Kinds, refuse_other_output, shared_changes};
-use crate::document::{CalibrationResult, ComparisonReport, PairComparison, TermSummary};
+use super::history::{Calibrated, CalibratedParameter, Kinds, refuse_other_output, shared_changes};
+use crate::document::{CalibrationResult, ComparisonReport, DifferenceSummary, PairComparison, TermSummary};
 use crate::error::{Error, Place};
 use crate::quantity::Date;
 
@@ -70,7 +70,11 @@ fn pair_of(
     let same_unit = first.session.unit() == second.session.unit();
     let years = years.or_else(|| years_between(first, second)).filter(|years| *years != 0.0);
     let comparison = differences(&[&a, &b], &names);
-    let value = |c: &Calibrated, name: &str| c.place(name).map(|place| c.values[place]);
+    let summary = |difference: &Difference| {
+        let [in_a, in_b] = [a.place(&difference.name)?, b.place(&difference.name)?];
+        let CalibratedParameter { unit, group, .. } = &b.parameters[in_b];
+        Some(DifferenceSummary::of(difference, (unit, *group), [Some(a.values[in_a]), Some(b.values[in_b])], years))
+    };
     Ok(PairComparison {
         first: pair[0],
         second: pair[1],
@@ -79,8 +83,12 @@ fn pair_of(
         only_in_second,
         by_priors_alone,
         same_files: same_files(first, second),
+        years,
+        differences: comparison.differences.iter().filter_map(summary).collect(),
+        chi_squared: comparison.chi_squared,
+        degrees_of_freedom: comparison.differences.len(),
+        probability: comparison.probability,
         agree: same_unit && comparison.agrees(),
-        ..PairComparison::of(second, &comparison, years, |name| [value(&a, name), value(&b, name)])
     })
 }
 

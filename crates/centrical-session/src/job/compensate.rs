@@ -10,7 +10,7 @@ use rayon::prelude::*;
 
 use super::axes::Axes;
 use crate::document::{
-    CalibrationResult, CompensatedFiles, CompensationReport, FirstReading, OutputSummary, ReadingsBeyond,
+    COMPENSATION_SCHEMA, CalibrationResult, CompensationReport, FirstReading, OutputSummary, Program, ReadingsBeyond,
     ResultObjection,
 };
 use crate::error::{Error, Place};
@@ -24,24 +24,11 @@ pub struct Compensated {
     /// Readings.
     pub readings: u64,
     /// Of these, readings that no specific force within the range gives; they are written as NaN.
-    pub outside: u64,
-    /// The first of those.
-    pub first_outside: Option<FirstOutside>,
+    pub outside: ReadingsBeyond,
     /// Readings beyond the calibrated range: the error model is extrapolated there.
-    pub beyond: u64,
-    /// The first of those.
-    pub first_beyond: Option<FirstOutside>,
+    pub beyond: ReadingsBeyond,
     /// Decimals of the specific forces as they are written [m/s^2], if they are rounded.
     pub decimals: Option<u32>,
-}
-
-/// A reading from out of a range.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct FirstOutside {
-    /// Its time [s].
-    pub t: f64,
-    /// The reading [m/s^2].
-    pub reading: [f64; 3],
 }
 
 /// What is compensated, and how far.
@@ -179,7 +166,7 @@ fn on_this_thread(
         for rows in compensated.collect::<Vec<_>>() {
             sum.add(&rows?);
         }
-        if let Some(first) = sum.first_beyond.filter(|_| calibrated.is_demanded) {
+        if let Some(first) = sum.beyond.first.filter(|_| calibrated.is_demanded) {
             let found = format!("{:?} m/s^2 at t = {} s", first.reading, first.t);
             let expected = format!("readings within the calibration, {:.1?} m/s^2", calibrated.limit);
             return Err(Error::content(input, Place::Whole, found, expected));
@@ -212,15 +199,10 @@ fn compensate_rows(
         |unequal: UnequalLengths| Error::content(input, Place::Whole, unequal.to_string(), "columns of equal length");
     let beyond = Outside::beyond(calibrated.limit, f.each_ref().map(|f| &**f)).map_err(unequal)?;
     let outside = compensation.apply_all(f).map_err(unequal)?;
-    let first = |k: usize| FirstOutside { t: t[k], reading: [0, 1, 2].map(|axis: usize| readings[axis][k]) };
-    Ok(Compensated {
-        readings: t.len() as u64,
-        outside: outside.count as u64,
-        first_outside: outside.first.map(first),
-        beyond: beyond.count as u64,
-        first_beyond: beyond.first.map(first),
-        decimals: None,
-    })
+    let first = |k: usize| FirstReading { t: t[k], reading: [0, 1, 2].map(|axis: usize| readings[axis][k]) };
+    let [outside, beyond] =
+        [outside, beyond].map(|found| ReadingsBeyond { count: found.count as u64, first: found.first.map(first) });
+    Ok(Compensated { readings: t.len() as u64, outside, beyond, decimals: None })
 }
 
 impl Compensated {
@@ -231,25 +213,30 @@ impl Compensated {
         certificate: &Certificate,
         objections: &[ResultObjection],
     ) -> CompensationReport {
-        let CompensationRequest { result, record, out, .. } = request;
-        let first = |first: Option<FirstOutside>| first.map(|f| FirstReading { t: f.t, reading: f.reading });
+        let [result, record, out] =
+            [&request.result, &request.record, &request.out].map(|file| file.display().to_string());
+        let largest = certificate.margin * certificate.range;
         CompensationReport {
+            schema: COMPENSATION_SCHEMA,
+            program: Program::this(),
+            result,
+            record,
+            out,
             acceptable: objections.is_empty(),
             objections: objections.iter().map(Into::into).collect(),
             decimals: self.decimals,
             readings: self.readings,
-            outside_range: ReadingsBeyond { count: self.outside, first: first(self.first_outside) },
-            beyond_calibration: ReadingsBeyond { count: self.beyond, first: first(self.first_beyond) },
-            ..CompensationReport::new(CompensatedFiles { result, record, out }, certificate.range, certificate.margin)
+            range: certificate.range,
+            largest_range: largest.is_finite().then_some(largest),
+            outside_range: self.outside,
+            beyond_calibration: self.beyond,
         }
     }
 
     /// What became of these readings and of later ones.
     fn add(&mut self, later: &Self) {
         self.readings += later.readings;
-        self.outside += later.outside;
-        self.first_outside = self.first_outside.or(later.first_outside);
-        self.beyond += later.beyond;
-        self.first_beyond = self.first_beyond.or(later.first_beyond);
+        self.outside.add(later.outside);
+        self.beyond.add(later.beyond);
     }
 }

@@ -79,7 +79,6 @@ impl CalibrationResult {
             budget: Some(BudgetSummary::new(&budget, count, model.priors())),
             validity,
             rests_on,
-            stability: None,
             drift: DriftSummary::of(calibration, reduced)?,
             tilt: TiltSummary::of(calibration, reduced),
             speeds: SpeedsSummary::of(calibration, session, reduced)?,

@@ -73,9 +73,6 @@ pub struct CalibrationResult {
     /// The effects whose absence the result rests on, the worst first.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub rests_on: Vec<RestsOn>,
-    /// Stability of the reading at rest, if it was computed.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub stability: Option<Vec<StabilityCurve>>,
     /// How the readings drifted over plateaus and over the session; none for a session that came already averaged.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub drift: Option<DriftSummary>,
@@ -378,21 +375,6 @@ pub struct ConvergenceSummary {
     pub plateaus: Vec<usize>,
     /// Standard uncertainty, SI: one row for each of these numbers, in the order of the parameters; `null` for the attitude of a single rest.
     pub standard_uncertainty: Vec<Vec<Option<f64>>>,
-}
-
-/// Deviation of one axis against averaging time.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct StabilityCurve {
-    /// Newtonometer: 1, 2 or 3.
-    pub axis: usize,
-    /// Averaging times [s].
-    pub tau: Vec<f64>,
-    /// Deviations [m/s^2].
-    pub deviation: Vec<f64>,
-    /// Lower ends of their intervals [m/s^2].
-    pub lower: Vec<f64>,
-    /// Upper ends of their intervals [m/s^2].
-    pub upper: Vec<f64>,
 }
 
 #[allow(clippy::trivially_copy_pass_by_ref, reason = "serde asks for a reference")]
