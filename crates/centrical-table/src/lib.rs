@@ -44,7 +44,6 @@ mod column;
 mod error;
 mod foreign;
 mod reader;
-mod rows;
 #[cfg(feature = "xlsx")]
 mod sheet;
 mod source;
@@ -56,11 +55,10 @@ mod write;
 pub use bytes::Bytes;
 
 pub use binary::{Cell, Kind, TypedColumn, TypedReader};
-pub use column::{ColumnName, Field, LARGEST_NUMBER, Rule, TableLines, UnitsFound, is_missing};
+pub use column::{ColumnName, Field, LARGEST_NUMBER, Rows, Rule, TableLines, UnitsFound, is_missing, to_scale};
 pub use error::{Error, Place, quoted, shown_path};
 pub use foreign::{cut, escaped, harmless, harmless_line};
 pub use reader::{Extent, TableReader, binary_columns, estimate_rows, text_form};
-pub use rows::{Rows, to_scale};
 pub use source::{Source, SourceReader};
 pub use stamp::{StampKind, Stamps};
 pub use text::{DecimalSign, Index, Reread, StampColumn, TextEncoding, TextForm, unit_beside_name, unit_of_word};

@@ -11,9 +11,8 @@ use memchr::{memchr_iter, memrchr};
 #[cfg(feature = "xlsx")]
 use crate::binary::catch_panic;
 use crate::binary::{BinaryFormat, ColumnReader};
-use crate::column::{ColumnName, Field, TableLines, UnitsFound};
+use crate::column::{ColumnName, Field, RowNumber, Rows, TableLines, UnitsFound};
 use crate::error::{Error, Place};
-use crate::rows::{RowNumber, Rows};
 use crate::source::Source;
 use crate::stamp::Stamps;
 use crate::text::{FromUtf16, Index, Lines, Packed, Plain, SIGHT, TextEncoding, TextForm, TextReader};

@@ -33,9 +33,8 @@ pub(crate) use self::lines::{Lines, Packed, Plain};
 use self::piece::Piece;
 use self::prologue::Prologue;
 pub use self::unit_words::{unit_beside_name, unit_of_word};
-use crate::column::{Field, TableLines, UnitsFound};
+use crate::column::{ASCENDING, Backwards, Before, Field, RowNumber, Rows, TableLines, UnitsFound};
 use crate::error::{Error, Place};
-use crate::rows::{ASCENDING, Backwards, Before, RowNumber, Rows};
 use crate::stamp::Stamps;
 
 /// Pieces read at a time.

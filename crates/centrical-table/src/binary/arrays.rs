@@ -7,9 +7,8 @@ use flate2::read::{DeflateDecoder, ZlibDecoder};
 use lz4_flex::frame::FrameDecoder;
 
 use super::columnar::Column;
-use crate::column::{ColumnName, Field};
+use crate::column::{ColumnName, Field, ROWS};
 use crate::error::{Error, Place, quoted};
-use crate::rows::ROWS;
 use crate::source::Source;
 use crate::stamp::TickForm;
 use crate::unpacking::Unpacked;

@@ -4,9 +4,8 @@ use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
 
-use crate::column::{Field, LARGEST_NUMBER, Rule};
+use crate::column::{ASCENDING, Before, Field, LARGEST_NUMBER, Rows, Rule, runs_backwards};
 use crate::error::{Error, Place};
-use crate::rows::{ASCENDING, Before, Rows, runs_backwards};
 use crate::stamp::{Stamps, TickForm};
 
 /// A column that is read some values at a time.
@@ -15,7 +14,7 @@ pub(super) enum Column {
     Stamps(TickForm, NextStamps),
 }
 
-/// Appends the next values of a column, [`crate::rows::ROWS`] at most, and none at its end.
+/// Appends the next values of a column, [`crate::column::ROWS`] at most, and none at its end.
 pub(super) type NextNumbers = Box<dyn FnMut(&mut Vec<f64>) -> Result<(), Error> + Send>;
 
 /// The same of stamps: their seconds, and what they are counted as.

@@ -6,9 +6,8 @@ use hdf5_pure::{ChunkIndex, Dataset, Error as HdfError, File, FormatError, ReadS
 
 use super::catch_panic::catch_panic;
 use super::columnar::Column;
-use crate::column::{ColumnName, Field};
+use crate::column::{ColumnName, Field, ROWS};
 use crate::error::{Error, Place, quoted};
-use crate::rows::ROWS;
 use crate::source::Source;
 
 /// Numbers of a matrix that are read together.

@@ -16,9 +16,8 @@ use super::arrow;
 use super::catch_panic::catch_panic;
 use super::columnar::{Column, MISSING, Parts};
 use super::parquet_pages::{Checked, Pages};
-use crate::column::{ColumnName, Field, Rule};
+use crate::column::{ColumnName, Field, ROWS, Rule};
 use crate::error::{Error, Place, quoted};
-use crate::rows::ROWS;
 use crate::source::Source;
 use crate::stamp::{TickForm, TickUnit};
 

@@ -14,9 +14,8 @@ use std::rc::Rc;
 use self::metadata::{Kind, Layout, Listed, Metadata, Properties, Segment, Value};
 use self::scaling::Scaling;
 use super::columnar::Column;
-use crate::column::{ColumnName, Field, Rule};
+use crate::column::{ColumnName, Field, ROWS, Rule};
 use crate::error::{Error, Place, quoted};
-use crate::rows::ROWS;
 use crate::source::Source;
 
 /// Bytes that are read at a time.

@@ -8,9 +8,8 @@ use super::batch::{Batch, ROWS};
 use super::fields::{Delimiter, Fault, number, unquoted};
 use super::number::plain;
 use super::shape::is_number;
-use crate::column::{ColumnName, Field, LARGEST_NUMBER, Rule, is_missing};
+use crate::column::{ColumnName, Field, LARGEST_NUMBER, Rows, Rule, is_missing};
 use crate::error::quoted;
-use crate::rows::Rows;
 use crate::stamp;
 
 /// Where the wanted numbers stand in a line.

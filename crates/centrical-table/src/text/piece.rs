@@ -8,8 +8,7 @@ use super::layout::Layout;
 use super::lines::{self, Text};
 use super::prologue::{Line, MOST_ABOVE, Prologue, Start};
 use super::separators::Separators;
-use crate::column::Field;
-use crate::rows::{ASCENDING, Rows, runs_backwards};
+use crate::column::{ASCENDING, Field, Rows, runs_backwards};
 use crate::stamp::Stamps;
 
 /// A piece on its way from the file to the rows.
