@@ -85,3 +85,26 @@ pub use self::watch::{
     LiveLost, LivePlateau, LiveRecord, LiveReport, LiveSpeed, LiveStatus, PlateauLabel, WatchState, WatchedPlateau,
     append_history, keep_history, read_history, seconds_since_1970,
 };
+
+json::documents! {
+    AddedReport: added::ADDED_SCHEMA,
+    AssessmentReport: assessment::ASSESSMENT_SCHEMA,
+    CalibrationResult: SCHEMA,
+    ChartReport: CHART_SCHEMA,
+    ComparisonReport: comparison::COMPARISON_SCHEMA,
+    CompensationReport: COMPENSATION_SCHEMA,
+    DocumentsReport: documents::DOCUMENTS_SCHEMA,
+    DraftReport: draft::DRAFT_SCHEMA,
+    HistoryList: history_list::HISTORY_LIST_SCHEMA,
+    ModelsReport: models::MODELS_SCHEMA,
+    MonteCarloReport: montecarlo::MONTE_CARLO_SCHEMA,
+    ObservabilityReport: observability::OBSERVABILITY_SCHEMA,
+    PlanReport: PLAN_SCHEMA,
+    RecordFindings: record_findings::KEY,
+    ReductionReport: reduction::REDUCTION_SCHEMA,
+    SeriesSummary: series::SERIES_SCHEMA,
+    SimulationReport: simulation::SIMULATION_SCHEMA,
+    StationHistoryReport: STATION_HISTORY_SCHEMA,
+    UnitHistoryReport: UNIT_HISTORY_SCHEMA,
+    UnitsHistoryReport: UNITS_HISTORY_SCHEMA,
+}

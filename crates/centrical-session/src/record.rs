@@ -1,5 +1,6 @@
 //! Records of the unit and telemetry of the centrifuge, in SI.
 
+mod checked_table;
 mod columns;
 mod equal_columns;
 mod input;
@@ -11,14 +12,15 @@ mod sample_cache;
 mod units_found;
 mod writer;
 
+pub(crate) use self::checked_table::{CheckedTable, Form as TableForm, NEWTONOMETER_RECORD, PULSES, RECORD, TELEMETRY};
 pub(crate) use self::columns::named_columns;
 pub use self::columns::{Column, Columns, MissingReadings, Scale};
 pub(crate) use self::equal_columns::EqualColumns;
 pub use self::input::Input;
 pub use self::overview::RecordOverview;
 pub(crate) use self::passes::RecordFile;
-pub(crate) use self::reader::{PULSES, RECORD, TELEMETRY, pulses_of, read_records, telemetry_of};
 pub use self::reader::{RecordReader, read_record, read_telemetry, stretch};
+pub(crate) use self::reader::{pulses_of, read_records, telemetry_of};
 pub(crate) use self::sample_cache::{MemoryBudget, SampleCache};
 pub(crate) use self::units_found::StatedUnits;
 pub use self::writer::RecordWriter;

@@ -7,6 +7,7 @@ use std::path::Path;
 
 use centrical_table::{Source, cut};
 use serde::de::DeserializeOwned;
+use toml_edit::{DocumentMut, Item, TableLike, Value};
 
 use self::strict::Strict;
 use self::words::found_and_expected;
@@ -46,16 +47,28 @@ pub(crate) fn from_toml<T: DeserializeOwned>(file: &Path, text: &str) -> Result<
 }
 
 /// Settings as they are edited: with comments and order.
-pub(crate) fn editable(file: &Path, text: &str) -> Result<toml_edit::DocumentMut, Error> {
+pub(crate) fn editable(file: &Path, text: &str) -> Result<DocumentMut, Error> {
     text.parse().map_err(|error: toml_edit::TomlError| {
         let place = error.span().map_or(Place::Whole, |span| Place::of_byte(text, span.start));
         form_error(file, place, error.message(), "TOML")
     })
 }
 
+/// The tables of an array, in either form of TOML.
+pub(crate) fn tables_of<'a>(document: &'a mut DocumentMut, name: &str) -> Vec<&'a mut dyn TableLike> {
+    match document.get_mut(name) {
+        Some(Item::ArrayOfTables(tables)) => tables.iter_mut().map(|table| table as &mut dyn TableLike).collect(),
+        Some(Item::Value(Value::Array(list))) => {
+            let tables = list.iter_mut().filter_map(Value::as_inline_table_mut);
+            tables.map(|table| table as &mut dyn TableLike).collect()
+        }
+        _ => Vec::new(),
+    }
+}
+
 /// A text in quotes, as settings have it.
 pub(crate) fn toml_text(text: &str) -> String {
-    toml_edit::Value::from(text).to_string().trim().to_owned()
+    Value::from(text).to_string().trim().to_owned()
 }
 
 /// A document from JSON, which should be what `expected` says; `line` is the number of its first line in the file.

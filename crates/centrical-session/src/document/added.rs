@@ -2,9 +2,7 @@
 
 use serde::Serialize;
 
-use super::json;
 use super::result::Program;
-use crate::error::Error;
 
 /// Name of the schema's present version.
 pub const ADDED_SCHEMA: &str = "centrical-added/1";
@@ -26,13 +24,5 @@ impl AddedReport {
     /// Of `new` results that were not there and `known` ones that were.
     pub fn of(new: usize, known: usize) -> Self {
         Self { schema: ADDED_SCHEMA, program: Program::this(), new, known }
-    }
-
-    /// The text of the document.
-    ///
-    /// # Errors
-    /// [`Error::Json`] when a value has no place in JSON.
-    pub fn to_json(&self) -> Result<String, Error> {
-        json::document(ADDED_SCHEMA, self)
     }
 }

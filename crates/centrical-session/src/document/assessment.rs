@@ -5,9 +5,7 @@ use centrical::{Experiment, Fit, Group, MeasurementModel, Source, Termination};
 use serde::Serialize;
 
 use super::documents::ObjectionName;
-use super::json;
 use super::result::{BudgetSummary, Program, ResultObjection, ValiditySummary};
-use crate::error::Error;
 
 /// Name of the schema's present version.
 pub const ASSESSMENT_SCHEMA: &str = "centrical-assessment/1";
@@ -194,14 +192,6 @@ impl AssessmentReport {
             acceptable: objections.is_empty(),
             objections: objections.iter().map(Into::into).collect(),
         }
-    }
-
-    /// The text of the document.
-    ///
-    /// # Errors
-    /// [`Error::Json`] when a value has no place in JSON.
-    pub fn to_json(&self) -> Result<String, Error> {
-        json::document(ASSESSMENT_SCHEMA, self)
     }
 }
 

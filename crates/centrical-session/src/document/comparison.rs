@@ -6,9 +6,7 @@ use centrical::Group;
 use centrical::uncertainty::Difference;
 use serde::Serialize;
 
-use super::json;
 use super::result::{CalibrationResult, Program};
-use crate::error::Error;
 
 /// Name of the schema's present version.
 pub const COMPARISON_SCHEMA: &str = "centrical-comparison/1";
@@ -130,14 +128,6 @@ impl ComparisonReport {
             comparisons,
             agree,
         }
-    }
-
-    /// The text of the document.
-    ///
-    /// # Errors
-    /// [`Error::Json`] when a value has no place in JSON.
-    pub fn to_json(&self) -> Result<String, Error> {
-        json::document(COMPARISON_SCHEMA, self)
     }
 }
 

@@ -3,9 +3,7 @@
 use serde::Serialize;
 
 use super::documents::ObjectionName;
-use super::json;
 use super::result::Program;
-use crate::error::Error;
 
 /// Name of the schema's present version.
 pub const COMPENSATION_SCHEMA: &str = "centrical-compensation/1";
@@ -65,14 +63,4 @@ pub struct FirstReading {
     pub t: f64,
     /// The reading [m/s^2].
     pub reading: [f64; 3],
-}
-
-impl CompensationReport {
-    /// The text of the document.
-    ///
-    /// # Errors
-    /// [`Error::Json`] when a value has no place in JSON.
-    pub fn to_json(&self) -> Result<String, Error> {
-        json::document(COMPENSATION_SCHEMA, self)
-    }
 }

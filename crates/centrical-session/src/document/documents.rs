@@ -4,9 +4,7 @@ use std::path::Path;
 
 use serde::Serialize;
 
-use super::json;
 use super::result::{CalibrationResult, Program, ResultObjection};
-use crate::error::Error;
 
 /// Name of the schema's present version.
 pub const DOCUMENTS_SCHEMA: &str = "centrical-documents/1";
@@ -131,13 +129,5 @@ impl DocumentsReport {
             objections,
             within_limits,
         }
-    }
-
-    /// The text of the document.
-    ///
-    /// # Errors
-    /// [`Error::Json`] when a value has no place in JSON.
-    pub fn to_json(&self) -> Result<String, Error> {
-        json::document(DOCUMENTS_SCHEMA, self)
     }
 }

@@ -4,9 +4,7 @@ use std::path::Path;
 
 use serde::Serialize;
 
-use super::json;
 use super::result::Program;
-use crate::error::Error;
 
 /// Name of the schema's present version.
 pub const DRAFT_SCHEMA: &str = "centrical-draft/1";
@@ -50,13 +48,5 @@ impl DraftReport {
             guesses,
             fill_in,
         }
-    }
-
-    /// The text of the document.
-    ///
-    /// # Errors
-    /// [`Error::Json`] when a value has no place in JSON.
-    pub fn to_json(&self) -> Result<String, Error> {
-        json::document(DRAFT_SCHEMA, self)
     }
 }

@@ -4,7 +4,6 @@ use serde::Serialize;
 
 use super::json;
 use super::result::Program;
-use crate::error::Error;
 use crate::store::{Row, Status};
 
 /// Name of the schema's present version.
@@ -117,14 +116,6 @@ impl HistoryList {
     /// Number of sessions without a result.
     pub fn failed(&self) -> usize {
         self.calibrations.iter().filter(|line| line.status == Status::Failed).count()
-    }
-
-    /// The text of the document.
-    ///
-    /// # Errors
-    /// [`Error::Json`] when a value has no place in JSON.
-    pub fn to_json(&self) -> Result<String, Error> {
-        json::document(HISTORY_LIST_SCHEMA, self)
     }
 }
 

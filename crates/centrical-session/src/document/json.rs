@@ -5,6 +5,22 @@ use serde::Serialize;
 
 use crate::error::Error;
 
+/// Gives documents, each beside the name of its schema, their text.
+macro_rules! documents {
+    ($($document:ty: $schema:expr,)*) => {
+        $(impl $document {
+            /// The text of the document.
+            ///
+            /// # Errors
+            /// [`Error::Json`](crate::Error::Json) when a value has no place in JSON.
+            pub fn to_json(&self) -> Result<String, $crate::Error> {
+                json::document($schema, self)
+            }
+        })*
+    };
+}
+pub(super) use documents;
+
 /// A document over many lines.
 pub(super) fn document(name: &'static str, value: &impl Serialize) -> Result<String, Error> {
     ended(name, serde_json::to_string_pretty(value))

@@ -6,7 +6,6 @@ use serde::Serialize;
 
 use super::json;
 use super::result::Program;
-use crate::error::Error;
 
 /// Name of the schema's present version.
 pub const MODELS_SCHEMA: &str = "centrical-models/1";
@@ -93,14 +92,6 @@ impl ModelsReport {
             candidates: selection.candidates.iter().map(CandidateSummary::of).collect(),
             terms: selection.terms.iter().map(term).collect(),
         }
-    }
-
-    /// The text of the document.
-    ///
-    /// # Errors
-    /// [`Error::Json`] when a value has no place in JSON.
-    pub fn to_json(&self) -> Result<String, Error> {
-        json::document(MODELS_SCHEMA, self)
     }
 }
 

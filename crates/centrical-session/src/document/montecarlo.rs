@@ -6,7 +6,6 @@ use serde::Serialize;
 
 use super::json;
 use super::result::Program;
-use crate::error::Error;
 
 /// Name of the schema's present version.
 pub const MONTE_CARLO_SCHEMA: &str = "centrical-montecarlo/1";
@@ -131,14 +130,6 @@ impl MonteCarloReport {
             weighted_square: SquareSummary::of(&monte_carlo.weighted_square, runs),
             chi_squared: SquareSummary::of(&monte_carlo.chi_squared, runs),
         }
-    }
-
-    /// The text of the document.
-    ///
-    /// # Errors
-    /// [`Error::Json`] when a value has no place in JSON.
-    pub fn to_json(&self) -> Result<String, Error> {
-        json::document(MONTE_CARLO_SCHEMA, self)
     }
 }
 

@@ -8,7 +8,6 @@ use centrical::{Combination, Group, MeasurementModel, SetPoint, Study, Weight};
 use serde::Serialize;
 use serde_json::{Map, Value};
 
-use crate::document::json;
 use crate::document::prediction::PredictionReport;
 use crate::document::result::{PriorSummary, Program};
 use crate::error::{Error, Place};
@@ -270,14 +269,6 @@ impl ObservabilityReport {
             combinations: combinations.iter().map(parse).collect::<Result<_, _>>()?,
             prediction: subject.prediction()?,
         })
-    }
-
-    /// The text of the document.
-    ///
-    /// # Errors
-    /// [`Error::Json`] when a value has no place in JSON.
-    pub fn to_json(&self) -> Result<String, Error> {
-        json::document(OBSERVABILITY_SCHEMA, self)
     }
 }
 

@@ -3,10 +3,8 @@
 use centrical::Group;
 use serde::Serialize;
 
-use crate::document::json;
 use crate::document::prediction::PredictionReport;
 use crate::document::result::Program;
-use crate::error::Error;
 
 /// Name of the schema's present version.
 pub(crate) const SCHEMA: &str = "centrical-plan/1";
@@ -177,13 +175,5 @@ impl PlanReport {
     pub fn is_acceptable(&self) -> bool {
         let is_missed = |goal: &GoalReport| goal.combined.is_none_or(|u| u > goal.wanted * (1.0 + 1e-6));
         self.prediction.reading.is_some() && !self.goals.iter().any(is_missed)
-    }
-
-    /// The text of the document.
-    ///
-    /// # Errors
-    /// [`Error::Json`] when a value has no place in JSON.
-    pub fn to_json(&self) -> Result<String, Error> {
-        json::document(SCHEMA, self)
     }
 }

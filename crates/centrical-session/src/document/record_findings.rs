@@ -5,7 +5,6 @@ use centrical::uncertainty::chi_squared_tail;
 use serde::{Deserialize, Serialize};
 
 use super::impossible::impossible;
-use super::json;
 use super::result::{CalibrationResult, SpeedsSummary};
 use super::steadiness::{DriftSummary, TiltSummary};
 use crate::error::{Error, Place};
@@ -16,7 +15,7 @@ use crate::settings::from_json_under;
 const SAME_PROBABILITY: f64 = 1e-6;
 
 /// The key that they stand under.
-const KEY: &str = "record_findings";
+pub(super) const KEY: &str = "record_findings";
 
 /// What calibrating the records found in them, in the forms of `result.json`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -65,14 +64,6 @@ impl RecordFindings {
         let is_other = |(_, found, expected): &(&str, f64, f64)| (found - expected).abs() > SAME_PROBABILITY;
         let (name, found, expected) = of_drift.into_iter().chain(of_tilt).find(is_other)?;
         Some((format!("{KEY}.{name}.probability = {found:e}"), format!("{expected:e}, that of its chi_squared")))
-    }
-
-    /// Their text in an experiment file.
-    ///
-    /// # Errors
-    /// [`Error::Json`] when a value has no place in JSON.
-    pub fn to_json(&self) -> Result<String, Error> {
-        json::document(KEY, self)
     }
 
     /// A result of the means with what the records show beside them.

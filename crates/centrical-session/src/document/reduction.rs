@@ -4,10 +4,8 @@ use std::path::Path;
 
 use serde::Serialize;
 
-use super::json;
 use super::result::Program;
 use super::steadiness::LeftOutSummary;
-use crate::error::Error;
 use crate::experiment::Session;
 use crate::reduced::{MountingFindings, Reduced};
 
@@ -103,13 +101,5 @@ impl ReductionReport {
             unscheduled: (1..).zip(&reduced.mountings).flat_map(unscheduled).collect(),
             plateaus: rows,
         }
-    }
-
-    /// The text of the document.
-    ///
-    /// # Errors
-    /// [`Error::Json`] when a value has no place in JSON.
-    pub fn to_json(&self) -> Result<String, Error> {
-        json::document(REDUCTION_SCHEMA, self)
     }
 }

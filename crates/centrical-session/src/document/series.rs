@@ -2,9 +2,7 @@
 
 use serde::Serialize;
 
-use super::json;
 use super::result::Program;
-use crate::error::Error;
 
 /// Name of the schema's present version.
 pub const SERIES_SCHEMA: &str = "centrical-series/1";
@@ -54,13 +52,5 @@ impl SeriesSummary {
             failed: 0,
             failures: Vec::new(),
         }
-    }
-
-    /// The text of the document.
-    ///
-    /// # Errors
-    /// [`Error::Json`] when a value has no place in JSON.
-    pub fn to_json(&self) -> Result<String, Error> {
-        json::document(SERIES_SCHEMA, self)
     }
 }

@@ -4,9 +4,7 @@ use std::path::Path;
 
 use serde::Serialize;
 
-use super::json;
 use super::result::Program;
-use crate::error::Error;
 use crate::experiment::{RestTable, Session};
 
 /// Name of the schema's present version.
@@ -48,13 +46,5 @@ impl SimulationReport {
             plateaus: plan.experiment.set_points.len() - rests,
             rests: (!plan.rest_tables.is_empty()).then_some(rests),
         }
-    }
-
-    /// The text of the document.
-    ///
-    /// # Errors
-    /// [`Error::Json`] when a value has no place in JSON.
-    pub fn to_json(&self) -> Result<String, Error> {
-        json::document(SIMULATION_SCHEMA, self)
     }
 }

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use centrical_table::{Bytes, Source};
 
 use crate::error::Error;
+use crate::record::{NEWTONOMETER_RECORD, RECORD};
 
 /// A folder of files. Some of them, or all, may be in memory.
 #[derive(Clone, PartialEq, Eq, Default)]
@@ -59,7 +60,7 @@ impl Folder {
 
     /// Opens the record of a mounting: its file, or the three of its newtonometers.
     pub(crate) fn open_record(&self, files: &[&Path]) -> Result<Vec<Source>, Error> {
-        let expected = if files.len() == 1 { "a record" } else { "the record of a newtonometer" };
+        let expected = if files.len() == 1 { RECORD } else { NEWTONOMETER_RECORD };
         files.iter().map(|file| self.open(file, expected)).collect()
     }
 

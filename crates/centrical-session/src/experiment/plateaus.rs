@@ -17,13 +17,13 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use centrical::{Experiment, Rotation, STANDARD_GRAVITY, SetPoint};
-use centrical_table::{ColumnName, Extent, Field, Rule, Source, TableLines, TableReader, parquet_bytes, write_whole};
+use centrical_table::{ColumnName, Extent, Field, Rule, Source, TableLines, parquet_bytes, write_whole};
 use nalgebra::{Matrix3, Vector3};
 
 use super::folder::Folder;
 use super::schedule::FASTEST;
 use crate::error::{Error, Place};
-use crate::record::StatedUnits;
+use crate::record::{CheckedTable, StatedUnits, TableForm};
 
 /// The mean readings of one plateau.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -230,12 +230,12 @@ pub(super) fn plateaus_of(source: &Source, mountings: usize, further: Further) -
     };
     let fields: Vec<Field> = columns.iter().enumerate().map(field).collect();
     let mut rows: Vec<Row> = Vec::new();
-    let mut table = TableReader::new(source.clone(), Extent::Whole, &fields, PLATEAUS, TableLines::default())?;
     let named = columns.iter().map(|(name, expected)| ((*name).to_owned(), unit_of(expected).to_owned()));
-    let mut units = StatedUnits::new(named.collect());
-    while table.next_batch()?.is_some() {
-        units.check(source.name(), &table)?;
-        for columns in table.batch() {
+    let units = StatedUnits::new(named.collect());
+    let form = TableForm { lines: TableLines::default(), missing: None, expected: PLATEAUS };
+    let mut table = CheckedTable::open(source.clone(), Extent::Whole, &fields, units, form)?;
+    while let Some(batch) = table.next_batch()? {
+        for columns in batch {
             rows.extend((0..columns[0].len()).map(|row| row_of(columns, row)));
         }
     }

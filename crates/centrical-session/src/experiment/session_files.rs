@@ -87,15 +87,10 @@ impl Session {
         std::iter::once(&self.file).chain(table).chain(of_mountings).map(PathBuf::as_path).collect()
     }
 
-    /// The file of a mounting's record, or the three of its newtonometers.
-    pub(crate) fn record_files(&self, mounting: usize) -> Result<Vec<&Path>, Error> {
-        self.record_file(mounting)?;
-        Ok(self.mountings[mounting].records().map(PathBuf::as_path).collect())
-    }
-
     /// Opens the file of a mounting's record, or the three of its newtonometers.
     pub(crate) fn open_record(&self, mounting: usize) -> Result<Vec<Source>, Error> {
-        self.folder.open_record(&self.record_files(mounting)?)
+        self.record_file(mounting)?;
+        self.folder.open_record(&self.mountings[mounting].records().map(PathBuf::as_path).collect::<Vec<_>>())
     }
 
     /// The text of the experiment file.

@@ -69,6 +69,11 @@ impl Speeds {
         self.measured.and_then(|measured| measured.scale).unwrap_or(0.0)
     }
 
+    /// Whether speeds are measured by a counter of pulses.
+    pub fn counts_pulses(&self) -> bool {
+        self.measured.is_some_and(|measured| measured.source == SpeedSource::Pulses)
+    }
+
     /// Whether the speeds of plateaus come from files beside the records.
     pub fn is_in_files(&self) -> bool {
         self.measured.is_some_and(|measured| measured.source != SpeedSource::Plateaus)

@@ -6,7 +6,6 @@ mod mounting;
 mod own_readings;
 mod pooling;
 mod rests;
-mod scheduler;
 
 use std::borrow::Cow;
 
@@ -15,12 +14,12 @@ use rayon::ThreadPoolBuilder;
 use rayon::prelude::*;
 
 pub use self::in_memory::{Recorded, reduce_recorded};
+use self::mounting::Scheduler;
 pub(crate) use self::mounting::{ShownSpeeds, located};
 use self::own_readings::refuse_shared_readings;
 pub(crate) use self::own_readings::{refuse_copies, refuse_repeated_rests};
 use self::pooling::pooled;
 pub(crate) use self::rests::{find_rests, is_of_gravity, mean_size, with_all_rests};
-use self::scheduler::Scheduler;
 use crate::error::Error;
 use crate::experiment::Session;
 use crate::record::Input;

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use centrical::OnProgress;
 use centrical_table::{TableFormat, claim_folder, refuse_inputs, write_whole};
-use toml_edit::{DocumentMut, InlineTable, Item, TableLike, Value, value};
+use toml_edit::{DocumentMut, InlineTable, Item, TableLike, value};
 
 use super::calibrate::calibrate_reduced;
 use crate::document::{CalibrationResult, Method, RecordFindings};
@@ -14,7 +14,7 @@ use crate::experiment::{
     write_plateaus, write_plateaus_parquet,
 };
 use crate::reduced::Reduced;
-use crate::settings::editable;
+use crate::settings::{editable, tables_of};
 
 /// Keys of a mounting that say what the table of plateaus says now.
 const REPLACED: [&str; 4] = ["record", "telemetry", "pulses", "plateaus"];
@@ -102,12 +102,10 @@ fn findings(
 /// The experiment file with the table, if there is one, instead of records, and all else, comments too, as it was. With `uncertainty` it says
 /// that plateaus state measured speeds, the others as uncertain as this.
 fn rewrite(document: &mut DocumentMut, session: &Session, table: Option<&str>, uncertainty: Option<f64>) {
-    match document.get_mut("mounting") {
-        Some(Item::ArrayOfTables(mountings)) => mountings.iter_mut().for_each(|mounting| strip(mounting)),
-        Some(Item::Value(Value::Array(mountings))) => {
-            mountings.iter_mut().filter_map(Value::as_inline_table_mut).for_each(|mounting| strip(mounting));
+    for mounting in tables_of(document, "mounting") {
+        for key in REPLACED {
+            mounting.remove(key);
         }
-        _ => {}
     }
     if let (Some(uncertainty), Some(centrifuge)) = (uncertainty, document.get_mut("centrifuge"))
         && let Some(centrifuge) = centrifuge.as_table_like_mut()
@@ -125,12 +123,8 @@ fn rewrite(document: &mut DocumentMut, session: &Session, table: Option<&str>, u
     if let Some(table) = table {
         document.insert("plateaus", value(table));
     }
-    let tables = session.rest_tables.iter().enumerate();
-    if let Some(Item::ArrayOfTables(tumbles)) = document.get_mut("tumble") {
-        tumbles.iter_mut().zip(tables).for_each(|(tumble, (n, rests))| rename_rests(n, tumble, rests));
-    } else if let Some(Item::Value(Value::Array(tumbles))) = document.get_mut("tumble") {
-        let inline = tumbles.iter_mut().filter_map(Value::as_inline_table_mut);
-        inline.zip(tables).for_each(|(tumble, (n, rests))| rename_rests(n, tumble, rests));
+    for (tumble, (n, rests)) in tables_of(document, "tumble").into_iter().zip(session.rest_tables.iter().enumerate()) {
+        rename_rests(n, tumble, rests);
     }
 }
 
@@ -153,12 +147,6 @@ fn rename_rests(n: usize, tumble: &mut dyn TableLike, table: &RestTable) {
     }
     if tumble.contains_key("attitudes") {
         tumble.insert("attitudes", value(attitudes));
-    }
-}
-
-fn strip(mounting: &mut dyn TableLike) {
-    for key in REPLACED {
-        mounting.remove(key);
     }
 }
 

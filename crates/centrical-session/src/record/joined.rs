@@ -100,7 +100,7 @@ impl Joined {
                 *passed += 1;
             }
         }
-        let last_file = self.parts[last].file.clone();
+        let last_file = self.parts[last].file().to_owned();
         for part in &mut self.parts {
             if part.time()?.is_none() {
                 if self.extent == Extent::Growing {
@@ -111,7 +111,7 @@ impl Joined {
                     "samples from t = {latest} on, where {} begins: the files of one mounting have one clock",
                     last_file.display()
                 );
-                return Err(Error::content(&part.file, Place::Whole, found, expected));
+                return Err(Error::content(part.file(), Place::Whole, found, expected));
             }
         }
         let [x, y, z] = &mut self.parts;
@@ -193,9 +193,9 @@ impl Joined {
                 let found = format!("{joined} of {} samples with a stamp that the other files have too", part.count);
                 let expected = format!(
                     "the stamps of {} to the end, as at the beginning: the files of one mounting have one clock",
-                    if part.file == first.file { &others[0].file } else { &first.file }.display()
+                    if part.file() == first.file() { others[0].file() } else { first.file() }.display()
                 );
-                return Err(Error::content(&part.file, Place::Whole, found, expected));
+                return Err(Error::content(part.file(), Place::Whole, found, expected));
             }
         }
         Ok(())
@@ -203,13 +203,13 @@ impl Joined {
 
     /// Sees at the end that the other files have readings at most stamps of `grid`.
     fn check_readings(&self, grid: usize) -> Result<(), Error> {
-        let Part { file, count, .. } = &self.parts[grid];
-        if 2 * self.count >= *count {
+        let (file, count) = (self.parts[grid].file(), self.parts[grid].count);
+        if 2 * self.count >= count {
             return Ok(());
         }
         let worst = (0..3).filter(|j| *j != grid).max_by_key(|j| self.missed[*j]).unwrap_or(grid);
         let found = format!("readings at {} of {count} stamps of {}", count - self.missed[worst], file.display());
         let expected = "most of them between two samples without a gap: the files of one mounting have one clock";
-        Err(Error::content(&self.parts[worst].file, Place::Whole, found, expected))
+        Err(Error::content(self.parts[worst].file(), Place::Whole, found, expected))
     }
 }

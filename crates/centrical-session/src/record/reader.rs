@@ -1,15 +1,15 @@
 //! Records and telemetry from their files, batch by batch, in SI.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use centrical::reduction::{Record, RecordSlice, SpeedTrace};
 use centrical::{OnProgress, advance, unwatched};
-use centrical_table::{Extent, Index, Reread, Rows, Source, Stamps, TableLines, TableReader};
+use centrical_table::{Extent, Index, Reread, Rows, Source, Stamps, TableLines};
 
-use super::columns::{Column, Columns, MissingReadings, Scale, fields};
+use super::checked_table::{CheckedTable, Form, PULSES, RECORD, TELEMETRY};
+use super::columns::{Column, Columns, MissingReadings, Scale};
 use super::equal_columns::EqualColumns;
 use super::joined::Joined;
-use super::units_found::StatedUnits;
 use crate::error::Error;
 
 /// Reads the whole record of `file`.
@@ -42,27 +42,14 @@ pub fn read_telemetry(file: &Path, columns: &Columns) -> Result<SpeedTrace, Erro
     telemetry_of(Source::open(file, TELEMETRY)?, columns, Extent::Whole)
 }
 
-/// What a record, telemetry, and times of pulses are expected to be.
-pub(crate) const RECORD: &str = "a record";
-pub(crate) const TELEMETRY: &str = "telemetry";
-pub(crate) const PULSES: &str = "times of pulses";
-
 /// Reads telemetry as far as it was written.
 ///
 /// # Errors
 /// As [`RecordReader::next_batch`].
 pub(crate) fn telemetry_of(source: Source, columns: &Columns, extent: Extent) -> Result<SpeedTrace, Error> {
-    let of_telemetry = [&columns.telemetry_time, &columns.speed];
     let form = Form { lines: columns.telemetry_lines, missing: None, expected: TELEMETRY };
-    let mut reader = RecordReader::with(source, extent, &of_telemetry, form)?;
-    let mut telemetry = SpeedTrace::default();
-    while let Some(batch) = reader.next_batch()? {
-        for rows in batch {
-            telemetry.t.extend_from_slice(&rows[0]);
-            telemetry.omega.extend_from_slice(&rows[1]);
-        }
-    }
-    Ok(telemetry)
+    let [t, omega] = whole_columns(source, extent, [&columns.telemetry_time, &columns.speed], form)?;
+    Ok(SpeedTrace { t, omega })
 }
 
 /// Reads times of pulses [s] as far as they were written.
@@ -71,36 +58,35 @@ pub(crate) fn telemetry_of(source: Source, columns: &Columns, extent: Extent) ->
 /// As [`RecordReader::next_batch`].
 pub(crate) fn pulses_of(source: Source, columns: &Columns, extent: Extent) -> Result<Vec<f64>, Error> {
     let form = Form { lines: TableLines::default(), missing: None, expected: PULSES };
-    let mut reader = RecordReader::with(source, extent, &[&columns.pulse], form)?;
-    let mut times = Vec::new();
+    let [times] = whole_columns(source, extent, [&columns.pulse], form)?;
+    Ok(times)
+}
+
+/// All values of some columns, in SI.
+fn whole_columns<const N: usize>(
+    source: Source,
+    extent: Extent,
+    columns: [&Column; N],
+    form: Form,
+) -> Result<[Vec<f64>; N], Error> {
+    let mut reader = RecordReader::with(source, extent, &columns, form)?;
+    let mut all = [const { Vec::new() }; N];
     while let Some(batch) = reader.next_batch()? {
         for rows in batch {
-            times.extend_from_slice(&rows[0]);
+            all.iter_mut().zip(rows).for_each(|(all, values)| all.extend_from_slice(values));
         }
     }
-    Ok(times)
+    Ok(all)
 }
 
 /// A record that is read in memory that does not grow with it.
 pub struct RecordReader {
-    file: PathBuf,
     table: Tables,
     scales: Scales,
-    units: StatedUnits,
-    /// What becomes of rows that lack a reading, in the record of a session.
-    missing: Option<MissingReadings>,
     /// Of one file with three readings, where it is asked.
     equal: Option<EqualColumns>,
     /// Bytes that [`RecordReader::newly_read`] has returned.
     reported: u64,
-}
-
-/// How a table is written, and what it is.
-#[derive(Clone, Copy)]
-struct Form {
-    lines: TableLines,
-    missing: Option<MissingReadings>,
-    expected: &'static str,
 }
 
 impl RecordReader {
@@ -122,11 +108,8 @@ impl RecordReader {
         let (of_record, missing) = (columns.of_record(), Some(columns.missing_readings));
         match <[Source; 3]>::try_from(sources) {
             Ok(sources) => {
-                let (file, scales) = (sources[0].name().to_owned(), Scales::of(&of_record));
-                let joined = Box::new(Joined::open(sources, extent, columns)?);
-                // Each file's part has its own.
-                let units = StatedUnits::of([]);
-                Ok(Self { file, table: Tables::Three(joined), scales, units, missing: None, equal: None, reported: 0 })
+                let table = Tables::Three(Box::new(Joined::open(sources, extent, columns)?));
+                Ok(Self { table, scales: Scales::of(&of_record), equal: None, reported: 0 })
             }
             Err(mut sources) => {
                 let form = Form { lines: columns.record_lines, missing, expected: RECORD };
@@ -138,13 +121,8 @@ impl RecordReader {
     }
 
     fn with(source: Source, extent: Extent, columns: &[&Column], form: Form) -> Result<Self, Error> {
-        let Form { lines, missing, expected } = form;
-        let file = source.name().to_owned();
-        let fields = fields(columns, missing.unwrap_or_default());
-        let table = TableReader::new(source, extent, &fields, expected, lines)?;
-        let units = StatedUnits::of(columns.iter().copied());
-        let (table, scales) = (Tables::One(Box::new(table)), Scales::of(columns));
-        Ok(Self { file, table, scales, units, missing, equal: None, reported: 0 })
+        let table = Tables::One(Box::new(CheckedTable::of_columns(source, extent, columns, form)?));
+        Ok(Self { table, scales: Scales::of(columns), equal: None, reported: 0 })
     }
 
     /// The next rows: columns of time [s] and of readings [m/s^2] ([`stretch`]), several sets of them, to be worked on where they
@@ -157,24 +135,14 @@ impl RecordReader {
     /// backwards; if the file names other units than those of the columns; at the end, if two readings of a session are the same.
     pub fn next_batch(&mut self) -> Result<Option<&mut [Rows]>, Error> {
         let is_over = match &mut self.table {
-            Tables::One(table) => {
-                let explain = |error| match self.missing {
-                    Some(missing) => missing.explain(error),
-                    None => error,
-                };
-                table.next_batch().map_err(explain)?.is_none()
-            }
+            Tables::One(table) => table.next_batch()?.is_none(),
             Tables::Three(joined) => joined.next_batch()? == 0,
         };
         if is_over {
-            self.equal.as_ref().map_or(Ok(()), |equal| equal.refuse(&self.file))?;
+            if let (Some(equal), Tables::One(table)) = (&self.equal, &self.table) {
+                equal.refuse(&table.file)?;
+            }
             return Ok(None);
-        }
-        if let Tables::One(table) = &self.table {
-            self.units.check(&self.file, table)?;
-        }
-        if let Some(missing) = self.missing {
-            self.table.batch().iter_mut().for_each(|rows| missing.leave_out(rows));
         }
         if let Some(equal) = &mut self.equal {
             // Before the scales, which may differ.
@@ -191,14 +159,14 @@ impl RecordReader {
     /// Keeps stamps as they are read, for [`RecordReader::take_stamps`].
     pub(crate) fn keep_stamps(&mut self) {
         if let Tables::One(table) = &mut self.table {
-            table.keep_stamps();
+            table.reader.keep_stamps();
         }
     }
 
     /// Stamps of the rows that were read last; one entry for each set.
     pub(crate) fn take_stamps(&mut self) -> Vec<Stamps> {
         match &mut self.table {
-            Tables::One(table) => table.take_stamps(),
+            Tables::One(table) => table.reader.take_stamps(),
             Tables::Three(joined) => vec![Stamps::default(); joined.batch().len()],
         }
     }
@@ -220,9 +188,10 @@ impl RecordReader {
 
     /// After the end: where the samples are, if any part can be read again.
     pub(super) fn into_index(self) -> Option<RecordIndex> {
-        let Self { scales, missing, .. } = self;
         let Tables::One(table) = self.table else { return None };
-        table.into_index().map(|index| RecordIndex { index, scales, missing: missing.unwrap_or_default() })
+        let CheckedTable { reader, missing, .. } = *table;
+        let (scales, missing) = (self.scales, missing.unwrap_or_default());
+        reader.into_index().map(|index| RecordIndex { index, scales, missing })
     }
 
     fn into_record(mut self, progress: OnProgress) -> Result<Record, Error> {
@@ -240,21 +209,21 @@ impl RecordReader {
 
 /// The file of a record, or its three.
 enum Tables {
-    One(Box<TableReader>),
+    One(Box<CheckedTable>),
     Three(Box<Joined>),
 }
 
 impl Tables {
     fn batch(&mut self) -> &mut [Rows] {
         match self {
-            Self::One(table) => table.batch(),
+            Self::One(table) => table.reader.batch(),
             Self::Three(joined) => joined.batch(),
         }
     }
 
     fn bytes(&self) -> u64 {
         match self {
-            Self::One(table) => table.bytes(),
+            Self::One(table) => table.reader.bytes(),
             Self::Three(joined) => joined.bytes(),
         }
     }

@@ -6,9 +6,7 @@ use centrical::Group;
 use serde::{Serialize, Serializer};
 
 use super::unit::PastSession;
-use crate::document::json;
 use crate::document::result::Program;
-use crate::error::Error;
 
 /// Name of the schema's present version.
 pub const CHART_SCHEMA: &str = "centrical-chart/1";
@@ -123,15 +121,5 @@ impl Display for ChartRule {
 impl Serialize for ChartRule {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.collect_str(self)
-    }
-}
-
-impl ChartReport {
-    /// The text of the document.
-    ///
-    /// # Errors
-    /// [`Error::Json`] when a value has no place in JSON.
-    pub fn to_json(&self) -> Result<String, Error> {
-        json::document(CHART_SCHEMA, self)
     }
 }

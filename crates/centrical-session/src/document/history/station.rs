@@ -3,9 +3,7 @@
 use centrical::Group;
 use serde::Serialize;
 
-use crate::document::json;
 use crate::document::result::Program;
-use crate::error::Error;
 use crate::quantity::Date;
 
 /// Name of the schema's present version.
@@ -100,15 +98,5 @@ impl StationParameter {
     /// Probability of the less likely of slope and change.
     fn lasting(&self) -> f64 {
         self.slope_probability.unwrap_or(1.0).min(self.change_probability.unwrap_or(1.0))
-    }
-}
-
-impl StationHistoryReport {
-    /// The text of the document.
-    ///
-    /// # Errors
-    /// [`Error::Json`] when a value has no place in JSON.
-    pub fn to_json(&self) -> Result<String, Error> {
-        json::document(STATION_HISTORY_SCHEMA, self)
     }
 }

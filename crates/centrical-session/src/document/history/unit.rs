@@ -4,9 +4,7 @@ use centrical::Group;
 use centrical::uncertainty::Level;
 use serde::Serialize;
 
-use crate::document::json;
 use crate::document::result::Program;
-use crate::error::Error;
 use crate::quantity::Date;
 
 /// Name of the schema's present version.
@@ -212,14 +210,6 @@ pub struct DueDate {
 const TOO_WELL: f64 = 1e-4;
 
 impl UnitHistoryReport {
-    /// The text of the document.
-    ///
-    /// # Errors
-    /// [`Error::Json`] when a value has no place in JSON.
-    pub fn to_json(&self) -> Result<String, Error> {
-        json::document(UNIT_HISTORY_SCHEMA, self)
-    }
-
     /// Whether the calibrations differ by more than their stated uncertainties.
     pub fn differs(&self) -> bool {
         self.sameness.as_ref().is_some_and(|test| Level::Disagreement.is_passed_by(test.probability))

@@ -4,9 +4,7 @@ use centrical::Group;
 use serde::Serialize;
 
 use super::unit::LeftOutSession;
-use crate::document::json;
 use crate::document::result::Program;
-use crate::error::Error;
 use crate::quantity::Date;
 
 /// Name of the schema's present version.
@@ -201,14 +199,4 @@ pub struct CapabilitySummary {
     pub cpk: f64,
     /// Its interval.
     pub cpk_interval: [f64; 2],
-}
-
-impl UnitsHistoryReport {
-    /// The text of the document.
-    ///
-    /// # Errors
-    /// [`Error::Json`] when a value has no place in JSON.
-    pub fn to_json(&self) -> Result<String, Error> {
-        json::document(UNITS_HISTORY_SCHEMA, self)
-    }
 }

@@ -9,7 +9,6 @@ use nalgebra::DMatrix;
 
 use super::contradiction::contradiction;
 use super::schema::{CalibrationResult, ParameterEstimate, PlateauSummary, SCHEMA};
-use crate::document::json;
 use crate::error::{Error, Place};
 use crate::settings::{from_json, read_result};
 
@@ -20,14 +19,6 @@ impl CalibrationResult {
     /// [`Error::Json`] when a value has no place in JSON, [`Error::Table`] when the folder does not take it.
     pub fn write(&self, path: &Path) -> Result<(), Error> {
         Ok(write_whole(path, self.to_json()?.as_bytes())?)
-    }
-
-    /// The text of the file.
-    ///
-    /// # Errors
-    /// [`Error::Json`] when a value has no place in JSON.
-    pub fn to_json(&self) -> Result<String, Error> {
-        json::document(SCHEMA, self)
     }
 
     /// The plateaus that are rests in free attitudes.

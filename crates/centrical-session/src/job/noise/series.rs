@@ -3,13 +3,13 @@
 use std::path::PathBuf;
 
 use centrical::{OnProgress, advance};
-use centrical_table::{Extent, Rule, Source, TableLines, TableReader};
+use centrical_table::{Extent, Rule, Source, TableLines};
 
 use crate::error::{Error, Place};
 use crate::experiment::{PlateauName, Session};
 use crate::job::reduce::reduce;
 use crate::quantity::Dimension;
-use crate::record::{Column, RECORD, Scale, StatedUnits};
+use crate::record::{CheckedTable, Column, RECORD, Scale, StatedUnits, TableForm};
 
 /// Columns of readings, and their time.
 #[derive(Debug, Clone, PartialEq)]
@@ -41,22 +41,23 @@ impl Series {
         let (mut t, mut values) = (Vec::new(), vec![Vec::new(); readings.len()]);
         let mut ends = [f64::INFINITY, f64::NEG_INFINITY];
         let file = source.name().to_owned();
-        let mut table = TableReader::new(source, Extent::Whole, &fields, RECORD, lines)?;
+        let columns = || std::iter::once(time).chain(readings);
+        let form = TableForm { lines, missing: None, expected: RECORD };
+        let mut table = CheckedTable::open(source, Extent::Whole, &fields, StatedUnits::of(columns()), form)?;
         let mut bytes = 0;
-        let mut units = StatedUnits::of(std::iter::once(time).chain(readings));
-        while table.next_batch()?.is_some() {
-            units.check(&file, &table)?;
-            advance(progress, table.bytes() - std::mem::replace(&mut bytes, table.bytes()))?;
-            let batch = table.batch();
-            for rows in batch.iter().filter(|rows| !rows[0].is_empty()) {
-                let times: Vec<f64> = rows[0].iter().map(|raw| si(time, *raw)).collect();
+        while let Some(batch) = table.next_batch()? {
+            for rows in batch.iter_mut().filter(|rows| !rows[0].is_empty()) {
+                rows.iter_mut().zip(columns()).for_each(|(values, column)| column.scale.apply(values));
+                let times = &rows[0];
                 ends = [ends[0].min(times[0]), ends[1].max(times[times.len() - 1])];
                 let inside = times.partition_point(|t| *t < window[0])..times.partition_point(|t| *t <= window[1]);
-                for ((kept, raw), column) in values.iter_mut().zip(&rows[1..]).zip(readings) {
-                    kept.extend(raw[inside.clone()].iter().map(|raw| si(column, *raw)));
+                t.extend_from_slice(&times[inside.clone()]);
+                for (kept, values) in values.iter_mut().zip(&rows[1..]) {
+                    kept.extend_from_slice(&values[inside.clone()]);
                 }
-                t.extend_from_slice(&times[inside]);
             }
+            let read = table.reader.bytes();
+            advance(progress, read - std::mem::replace(&mut bytes, read))?;
         }
         if t.is_empty() {
             let found = format!("nothing from {} s to {} s", window[0], window[1]);
@@ -121,11 +122,6 @@ impl Series {
         )?;
         Ok((series, PlateauName::of(session, set_point)))
     }
-}
-
-/// A number of a column in SI.
-fn si(column: &Column, raw: f64) -> f64 {
-    (raw - column.scale.offset) * column.scale.factor
 }
 
 /// Unit of the values of a column as read: m/s^2, or the file's own unit where nothing takes its numbers to SI.

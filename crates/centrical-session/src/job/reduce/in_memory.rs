@@ -6,7 +6,7 @@ use centrical::reduction::{PulseTrain, Record, ReducedMounting, SpeedTrace, Surv
 use centrical::{OnProgress, advance};
 use rayon::prelude::*;
 
-use super::mounting::{OfRecord, ShownSpeeds, counts_pulses, located};
+use super::mounting::{OfRecord, ShownSpeeds, located};
 use super::pooling::pooled;
 use super::rests::with_all_rests;
 use crate::error::{Error, Place};
@@ -65,7 +65,7 @@ fn reduce_mounting(
     let refused = |source| Error::reduction(&session.file, number, source);
     let survey = Survey::of(record.as_slice()).map_err(refused)?.with_resolution(session.type_b.resolution);
     advance(progress, 0)?;
-    let counted = pulses.filter(|_| counts_pulses(session));
+    let counted = pulses.filter(|_| session.speeds.counts_pulses());
     let pulses = counted.map(|t| PulseTrain { t, per_revolution: session.pulses_per_revolution() });
     let located = located(session, number, &session.file, &survey, &ShownSpeeds { telemetry, pulses })?;
     let means = (0..located.windows().len()).map(|plateau| {

@@ -1,4 +1,4 @@
-//! What a record fits that does not fit its mounting: files or entries that are exchanged, a unit that was turned.
+//! What the record of a mounting should show; and what one fits instead: files or entries that are exchanged, a unit that was turned.
 
 use centrical::Experiment;
 use centrical::reduction::{ReductionError, ScheduledPlateau, Survey};

@@ -1,14 +1,85 @@
-//! A mounting's record in two passes: where its plateaus are, then what they read.
+//! The mountings of a session side by side, the record of each in two passes: where its plateaus are, then what they read.
 
 use std::path::Path;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use centrical::OnProgress;
 use centrical::reduction::{Located, PulseTrain, ReducedMounting, ScheduledPlateau, SpeedTrace, Survey};
+use centrical_table::estimate_rows;
+use rayon::prelude::*;
 
 use super::instead::fits_instead;
 use crate::error::Error;
-use crate::experiment::{Session, SpeedSource};
-use crate::record::{RecordFile, RecordOverview, SampleCache};
+use crate::experiment::Session;
+use crate::record::{MemoryBudget, RecordFile, RecordOverview, SampleCache};
+
+/// A mounting's number, and its plateaus or why they are missing.
+type Numbered = (usize, Result<OfRecord, Error>);
+
+/// Hands out the mountings of a session in their order, to as many lanes as their samples fit into memory.
+pub(super) struct Scheduler<'a> {
+    session: &'a Session,
+    progress: OnProgress<'a>,
+    budget: MemoryBudget,
+    /// The next mounting.
+    next: AtomicUsize,
+}
+
+impl<'a> Scheduler<'a> {
+    /// Begins with the first mounting.
+    pub fn new(session: &'a Session, progress: OnProgress<'a>) -> Self {
+        Self { session, progress, budget: MemoryBudget::default(), next: AtomicUsize::new(0) }
+    }
+
+    /// Reduces all mountings. Where the files do not show their length, the first record is read on all threads, and shows it.
+    pub fn run(&self) -> Result<Vec<OfRecord>, Error> {
+        let mut done = Vec::new();
+        let lanes = match (mountings_in_flight(), self.estimate_samples()) {
+            (1, _) => 1,
+            (most, Some(samples)) => self.budget.capacity(samples).min(most),
+            (most, None) => {
+                let mut cache = SampleCache::new(&self.budget);
+                done.extend(self.reduce_next(&mut cache));
+                cache.capacity().min(most)
+            }
+        };
+        done.par_extend((0..lanes).into_par_iter().flat_map_iter(|_| self.lane()));
+        done.sort_by_key(|(number, _)| *number);
+        done.into_iter().map(|(_, reduced)| reduced).collect()
+    }
+
+    /// Reduces one mounting after the other, with the same memory, to the last.
+    fn lane(&self) -> Vec<Numbered> {
+        let mut cache = SampleCache::new(&self.budget);
+        std::iter::from_fn(|| self.reduce_next(&mut cache)).collect()
+    }
+
+    /// Reduces the next mounting; none after the last.
+    fn reduce_next(&self, cache: &mut SampleCache) -> Option<Numbered> {
+        let count = self.session.mountings.len();
+        let number = self.next.fetch_add(1, Ordering::Relaxed);
+        let reduced = (number < count).then(|| reduce_mounting(self.session, number, self.progress, cache))?;
+        if reduced.is_err() {
+            // Those before it are in flight: which error is the first does not depend on the threads.
+            self.next.store(count, Ordering::Relaxed);
+        }
+        Some((number, reduced))
+    }
+
+    /// Samples of the longest record, if all files show them.
+    fn estimate_samples(&self) -> Option<u64> {
+        let numbers = 0..self.session.mountings.len();
+        let rows = |number| estimate_rows(self.session.open_record(number).ok()?.first()?);
+        let samples = numbers.map(rows);
+        samples.collect::<Option<Vec<_>>>()?.into_iter().max()
+    }
+}
+
+/// Mountings reduced at a time: while one is searched for its plateaus, which threads cannot share well, the other is
+/// read. Per-thread buffers grow with the thread count; above two threads only one mounting fits.
+fn mountings_in_flight() -> usize {
+    if rayon::current_num_threads() > 2 { 1 } else { 2 }
+}
 
 /// What the record of a mounting comes down to.
 pub(super) struct OfRecord {
@@ -19,7 +90,7 @@ pub(super) struct OfRecord {
 }
 
 /// Reduces the record of a mounting, its samples kept in `cache` between the passes.
-pub(super) fn reduce_mounting(
+fn reduce_mounting(
     session: &Session,
     number: usize,
     progress: OnProgress,
@@ -30,7 +101,8 @@ pub(super) fn reduce_mounting(
     let refused = |source| Error::reduction(file, number, source);
     let (survey, interpolated) = record.survey(cache)?;
     let survey = survey.with_resolution(session.type_b.resolution);
-    let speeds = ShownSpeeds { telemetry: session.telemetry(number)?, pulses: counted_pulses(session, number)? };
+    let pulses = if session.speeds.counts_pulses() { session.pulses(number)? } else { None };
+    let speeds = ShownSpeeds { telemetry: session.telemetry(number)?, pulses };
     let located = located(session, number, file, &survey, &speeds)?;
     let means = record.means(cache, &located)?.into_iter().collect::<Result<_, _>>().map_err(refused)?;
     let overview = RecordOverview::of(number + 1, &survey.extremes().collect::<Vec<_>>());
@@ -76,16 +148,6 @@ pub(crate) fn located(
     Ok(located)
 }
 
-/// The pulses of a mounting, where they measure the speed.
-fn counted_pulses(session: &Session, number: usize) -> Result<Option<PulseTrain>, Error> {
-    if counts_pulses(session) { session.pulses(number) } else { Ok(None) }
-}
-
-/// Whether pulses measure the speed.
-pub(super) fn counts_pulses(session: &Session) -> bool {
-    session.speeds.measured.is_some_and(|measured| measured.source == SpeedSource::Pulses)
-}
-
 #[cfg(test)]
 mod tests {
     use std::fs::{self, File};
@@ -95,7 +157,6 @@ mod tests {
     use flate2::{Compression, write::GzEncoder};
 
     use super::*;
-    use crate::record::MemoryBudget;
 
     /// A record read once, again by its index, and again from start to end.
     #[test]

@@ -10,7 +10,7 @@ use centrical_table::{ColumnName, TableFormat, claim_folder, create_folder, refu
 use rayon::prelude::*;
 
 use super::files::{attitudes_path, pulses_path, record_path, telemetry_path, tumble_path};
-use super::session_text::{counts_pulses, with_files};
+use super::session_text::with_files;
 use crate::document::{Written, WrittenSession, WrittenTumble, truth_json};
 use crate::error::{Error, Place};
 use crate::experiment::{EXPERIMENT_FILE, OutputUnit, RestTable, Session, refuse_session, write_attitudes};
@@ -50,7 +50,7 @@ pub fn simulate_session(
     if !mountings.is_empty() {
         create_folder(&folder.join("telemetry"))?;
     }
-    if counts_pulses(plan) {
+    if plan.speeds.counts_pulses() {
         create_folder(&folder.join("pulses"))?;
     }
     let output = Output { plan, headers: &columns, format, folder, progress };
@@ -92,7 +92,7 @@ impl Output<'_> {
         let rows = raw([telemetry.t, speed], [&plan.columns.telemetry_time, &plan.columns.speed]);
         let file = folder.join(telemetry_path(m, format));
         write_table(&file, format, &headers.telemetry, std::iter::once(Ok(rows)))?;
-        if counts_pulses(plan) {
+        if plan.speeds.counts_pulses() {
             let rows = raw([mounting.pulses()], [&plan.columns.pulse]);
             let file = folder.join(pulses_path(m, format));
             write_table(&file, format, &headers.pulses, std::iter::once(Ok(rows)))?;

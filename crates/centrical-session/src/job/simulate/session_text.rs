@@ -1,12 +1,12 @@
 //! The plan's text as the session's: every mounting and every tumble names its files; all else stays as it was written.
 
 use centrical_table::TableFormat;
-use toml_edit::{DocumentMut, Item, TableLike, Value, value};
+use toml_edit::{Item, TableLike, value};
 
 use super::files::{attitudes_path, pulses_path, record_path, telemetry_path, tumble_path};
 use crate::error::{Error, Place};
-use crate::experiment::{RestTable, Session, SpeedSource};
-use crate::settings::{editable, read_settings};
+use crate::experiment::{RestTable, Session};
+use crate::settings::{editable, read_settings, tables_of};
 
 /// The text of the plan with `record` and `telemetry` of every mounting, and `record` of every tumble.
 pub(crate) fn with_files(plan: &Session, format: TableFormat) -> Result<String, Error> {
@@ -16,7 +16,7 @@ pub(crate) fn with_files(plan: &Session, format: TableFormat) -> Result<String, 
         return Err(Error::content(file, Place::Whole, "plateaus already averaged", expected));
     }
     let mut document = editable(file, &read_settings(file, "a plan")?)?;
-    let has_pulses = counts_pulses(plan);
+    let has_pulses = plan.speeds.counts_pulses();
     for (m, table) in tables_of(&mut document, "mounting").into_iter().enumerate() {
         name(table, m, format, has_pulses);
     }
@@ -32,28 +32,11 @@ pub(crate) fn with_files(plan: &Session, format: TableFormat) -> Result<String, 
     Ok(document.to_string())
 }
 
-/// Whether the speeds are measured by a counter of pulses.
-pub(crate) fn counts_pulses(plan: &Session) -> bool {
-    plan.speeds.measured.is_some_and(|measured| measured.source == SpeedSource::Pulses)
-}
-
 fn name(table: &mut dyn TableLike, mounting: usize, format: TableFormat, has_pulses: bool) {
     table.insert("record", value(record_path(mounting, format)));
     table.insert("telemetry", value(telemetry_path(mounting, format)));
     if has_pulses {
         table.insert("pulses", value(pulses_path(mounting, format)));
-    }
-}
-
-/// The tables of an array, in either form of TOML.
-fn tables_of<'a>(document: &'a mut DocumentMut, name: &str) -> Vec<&'a mut dyn TableLike> {
-    match document.get_mut(name) {
-        Some(Item::ArrayOfTables(tables)) => tables.iter_mut().map(|table| table as &mut dyn TableLike).collect(),
-        Some(Item::Value(Value::Array(list))) => {
-            let tables = list.iter_mut().filter_map(Value::as_inline_table_mut);
-            tables.map(|table| table as &mut dyn TableLike).collect()
-        }
-        _ => Vec::new(),
     }
 }
 

@@ -1,19 +1,16 @@
 //! The file of one newtonometer: rows that are read and not taken yet.
 
-use std::path::PathBuf;
+use std::path::Path;
 
-use centrical_table::{Extent, Rows, Source, TableReader};
+use centrical_table::{Extent, Rows, Source};
 
 use crate::error::Error;
-use crate::record::columns::{Columns, MissingReadings, fields};
-use crate::record::units_found::StatedUnits;
+use crate::record::checked_table::{CheckedTable, Form, NEWTONOMETER_RECORD};
+use crate::record::columns::Columns;
 
 /// A table of time and one reading.
 pub(super) struct Part {
-    pub file: PathBuf,
-    units: StatedUnits,
-    missing: MissingReadings,
-    table: TableReader,
+    table: CheckedTable,
     /// Rows that are read and not taken yet begin at `at`.
     rows: Rows,
     at: usize,
@@ -27,13 +24,15 @@ pub(super) struct Part {
 impl Part {
     /// Reads the source of newtonometer `j`, counted from 0.
     pub fn open(source: Source, j: usize, extent: Extent, columns: &Columns) -> Result<Self, Error> {
-        let of_file = [&columns.time, &columns.f[j]];
-        let (file, expected) = (source.name().to_owned(), "the record of a newtonometer");
-        let missing = columns.missing_readings;
-        let table = TableReader::new(source, extent, &fields(&of_file, missing), expected, columns.record_lines)?;
-        let units = StatedUnits::of(of_file);
-        let rows = vec![Vec::new(); 2];
-        Ok(Self { file, units, missing, table, rows, at: 0, is_over: false, count: 0, before: None })
+        let missing = Some(columns.missing_readings);
+        let form = Form { lines: columns.record_lines, missing, expected: NEWTONOMETER_RECORD };
+        let table = CheckedTable::of_columns(source, extent, &[&columns.time, &columns.f[j]], form)?;
+        Ok(Self { table, rows: vec![Vec::new(); 2], at: 0, is_over: false, count: 0, before: None })
+    }
+
+    /// The file.
+    pub fn file(&self) -> &Path {
+        &self.table.file
     }
 
     /// The time of the next row; none at the end.
@@ -82,20 +81,16 @@ impl Part {
 
     /// Bytes of the file that were read so far.
     pub fn bytes(&self) -> u64 {
-        self.table.bytes()
+        self.table.reader.bytes()
     }
 
     /// Reads the next rows behind those that are not taken yet.
     fn read(&mut self) -> Result<(), Error> {
         let at = std::mem::take(&mut self.at);
         self.rows.iter_mut().for_each(|values| drop(values.drain(..at)));
-        self.is_over = self.table.next_batch().map_err(|error| self.missing.explain(error))?.is_none();
-        if self.is_over {
-            return Ok(());
-        }
-        self.units.check(&self.file, &self.table)?;
-        for rows in self.table.batch() {
-            self.missing.leave_out(rows);
+        let batch = self.table.next_batch()?;
+        self.is_over = batch.is_none();
+        for rows in batch.unwrap_or_default() {
             self.count += rows[0].len() as u64;
             self.rows.iter_mut().zip(rows).for_each(|(all, values)| all.extend_from_slice(values));
         }
