@@ -15,7 +15,7 @@ use crate::column::{ColumnName, Field, RowNumber, Rows, TableLines, UnitsFound};
 use crate::error::{Error, Place};
 use crate::source::Source;
 use crate::stamp::Stamps;
-use crate::text::{FromUtf16, Index, Lines, Packed, Plain, SIGHT, TextEncoding, TextForm, TextReader};
+use crate::text::{Index, Lines, Packed, Plain, SIGHT, TextEncoding, TextForm, TextReader, complete_lines, in_utf_8};
 use crate::unpacking::Unpacked;
 
 /// Rows per byte of a packed file: the noise of a sensor takes a bit a row and more, however it is packed.
@@ -225,24 +225,36 @@ impl Format {
 
 /// The lines of a text that begins with `magic`.
 fn text_lines(source: Source, format: Format, magic: &[u8], extent: Extent, expected: &str) -> Result<Lines, Error> {
-    let (file, length) = (source.name().to_owned(), source.length());
+    let file = source.name().to_owned();
     let failed = |e| Error::reading(&file, e, expected);
-    let whole = source.reader_at(0);
     Ok(match (format, TextEncoding::utf_16(magic), extent) {
-        (Format::Gzip, ..) => Lines::Packed(Packed::new(&file, MultiGzDecoder::new(whole), length)),
-        (Format::Zstd, ..) => Lines::Packed(Packed::new(&file, zstd::Decoder::new(whole).map_err(failed)?, length)),
-        (Format::Workbook, ..) => {
-            let text = workbook_text(&source)?;
+        (Format::Text, None, Extent::Whole) => Lines::Plain(Plain::new(source)),
+        (Format::Text, None, Extent::Growing) => Lines::Plain(Plain::new(source).complete().map_err(failed)?),
+        (Format::Text, Some(encoding), Extent::Growing) => {
+            let newline: [u8; 2] = if encoding == TextEncoding::Utf16Be { [0, b'\n'] } else { [b'\n', 0] };
+            let complete = complete_lines(&source, &newline).map_err(failed)?;
+            Lines::Packed(Packed::new(&file, Box::new(source.reader_at(0).take(complete)), complete))
+        }
+        _ => {
+            let (text, length) = packed_text(&source, format, expected)?;
+            Lines::Packed(Packed::new(&file, text, length))
+        }
+    })
+}
+
+/// The text that is packed in a source, and the length of what it is packed in.
+fn packed_text(source: &Source, format: Format, expected: &str) -> Result<(Box<dyn Read + Send>, u64), Error> {
+    let (whole, length) = (source.reader_at(0), source.length());
+    let failed = |e| Error::reading(source.name(), e, expected);
+    Ok(match format {
+        Format::Gzip => (Box::new(MultiGzDecoder::new(whole)), length),
+        Format::Zstd => (Box::new(zstd::Decoder::new(whole).map_err(failed)?), length),
+        Format::Workbook => {
+            let text = workbook_text(source)?;
             let most = length.max(text.len() as u64);
-            Lines::Packed(Packed::new(&file, io::Cursor::new(text), most))
+            (Box::new(io::Cursor::new(text)), most)
         }
-        (_, Some(_), Extent::Whole) => Lines::Packed(Packed::new(&file, whole, length)),
-        (_, Some(encoding), Extent::Growing) => {
-            let complete = complete_lines(&source, encoding).map_err(failed)?;
-            Lines::Packed(Packed::new(&file, whole.take(complete), complete))
-        }
-        (_, None, Extent::Whole) => Lines::Plain(Plain::new(source)),
-        (_, None, Extent::Growing) => Lines::Plain(Plain::new(source).complete().map_err(failed)?),
+        Format::Text | Format::Binary(_) => (Box::new(whole), length),
     })
 }
 
@@ -256,24 +268,16 @@ pub fn text_form(file: &Path) -> Result<Option<TextForm>, Error> {
     const EXPECTED: &str = "a table of numbers";
     let failed = |e| Error::reading(file, e, EXPECTED);
     let source = Source::open(file, EXPECTED)?;
-    let (whole, length) = (source.reader_at(0), source.length());
-    let text: Box<dyn Read> = match Format::of(&first_bytes(&source).map_err(failed)?, &source) {
-        Format::Text => Box::new(whole),
-        Format::Gzip => Box::new(Unpacked::new(MultiGzDecoder::new(whole), length, None)),
-        Format::Zstd => Box::new(Unpacked::new(zstd::Decoder::new(whole).map_err(failed)?, length, None)),
-        Format::Workbook => Box::new(io::Cursor::new(workbook_text(&source)?)),
-        Format::Binary(_) => return Ok(None),
-    };
-    let mut sample = Vec::new();
-    text.take(SAMPLE).read_to_end(&mut sample).map_err(|e| Error::unpacking(file, e, EXPECTED))?;
-    let is_cut = sample.len() as u64 == SAMPLE;
-    let encoding = TextEncoding::utf_16(&sample[..sample.len().min(SIGHT)]);
-    if let Some(encoding) = encoding {
-        let mut text = Vec::new();
-        FromUtf16::new(sample.as_slice(), encoding).read_to_end(&mut text).map_err(failed)?;
-        sample = text;
+    let format = Format::of(&first_bytes(&source).map_err(failed)?, &source);
+    if matches!(format, Format::Binary(_)) {
+        return Ok(None);
     }
-    if is_cut {
+    let (text, length) = packed_text(&source, format, EXPECTED)?;
+    let unpacking = |e| Error::unpacking(file, e, EXPECTED);
+    let (text, encoding) = in_utf_8(Box::new(Unpacked::new(text, length, None))).map_err(unpacking)?;
+    let mut sample = Vec::new();
+    text.take(SAMPLE).read_to_end(&mut sample).map_err(unpacking)?;
+    if sample.len() as u64 == SAMPLE {
         sample.truncate(memrchr(b'\n', &sample).map_or(0, |end| end + 1));
     }
     Ok(TextForm::of(sample.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&sample), encoding))
@@ -315,23 +319,6 @@ fn workbook_text(source: &Source) -> Result<Vec<u8>, Error> {
         let expected = "the sheet saved as text (this program was built without the feature xlsx)";
         Err(Error::content(source.name(), Place::Whole, "a workbook (.xlsx)", expected))
     }
-}
-
-/// Bytes up to the end of the last complete line of a text in UTF-16.
-fn complete_lines(source: &Source, encoding: TextEncoding) -> io::Result<u64> {
-    const PIECE: u64 = 1 << 16;
-    let newline: [u8; 2] = if encoding == TextEncoding::Utf16Be { [0, b'\n'] } else { [b'\n', 0] };
-    let (mut end, mut bytes) = (source.length() & !1, Vec::new());
-    while end > 0 {
-        let start = end.saturating_sub(PIECE);
-        bytes.clear();
-        source.reader_at(start).take(end - start).read_to_end(&mut bytes)?;
-        if let Some(last) = bytes.as_chunks().0.iter().rposition(|unit| *unit == newline) {
-            return Ok(start + 2 * (last as u64 + 1));
-        }
-        end = start;
-    }
-    Ok(0)
 }
 
 /// The first bytes, by which a format is recognised.

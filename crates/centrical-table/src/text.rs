@@ -25,15 +25,15 @@ use memchr::memchr_iter;
 use rayon::prelude::*;
 
 pub use self::encoding::TextEncoding;
-pub(crate) use self::encoding::{FromUtf16, SIGHT};
+pub(crate) use self::encoding::{SIGHT, in_utf_8};
 use self::fields::Fault;
 pub use self::form::{DecimalSign, StampColumn, TextForm};
 use self::layout::Layout;
-pub(crate) use self::lines::{Lines, Packed, Plain};
+pub(crate) use self::lines::{Lines, Packed, Plain, complete_lines};
 use self::piece::Piece;
 use self::prologue::Prologue;
 pub use self::unit_words::{unit_beside_name, unit_of_word};
-use crate::column::{ASCENDING, Backwards, Before, Field, RowNumber, Rows, TableLines, UnitsFound};
+use crate::column::{Before, Field, RowNumber, Rows, TableLines, UnitsFound};
 use crate::error::{Error, Place};
 use crate::stamp::Stamps;
 
@@ -131,7 +131,7 @@ impl TextReader {
             let mut bytes = 0;
             for (piece, rows) in pieces.iter_mut().zip(&*rows) {
                 if let Some(backwards) = before.next(rows, fields) {
-                    return Err(located(file, *line + piece.first_row, backwards.fault(fields)));
+                    return Err(located(file, *line + piece.first_row, Fault::of(backwards, fields)));
                 }
                 if let Some((at, fault)) = piece.fault.take() {
                     return Err(located(file, *line + at, fault));
@@ -311,13 +311,6 @@ impl Reread<'_> {
         read.collect::<Vec<_>>().into_iter().collect::<Result<(), Error>>()?;
         self.count = batch.len();
         Ok(Some(&mut rows[..self.count]))
-    }
-}
-
-impl Backwards {
-    fn fault(self, fields: &[Field]) -> Fault {
-        let column = Some(fields[self.field].name.to_string());
-        Fault { column, found: self.found, expected: ASCENDING.to_owned() }
     }
 }
 

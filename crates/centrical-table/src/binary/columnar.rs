@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
 
-use crate::column::{ASCENDING, Before, Field, LARGEST_NUMBER, Rows, Rule, runs_backwards};
-use crate::error::{Error, Place};
+use crate::column::{ASCENDING, Before, ColumnName, Field, LARGEST_NUMBER, Rows, Rule, runs_backwards};
+use crate::error::{Error, Place, quoted};
 use crate::stamp::{Stamps, TickForm};
 
 /// A column that is read some values at a time.
@@ -28,6 +28,20 @@ pub(super) const MISSING: f64 = f64::from_bits(0x7ff8_0000_0000_0eaf);
 
 /// Sets of rows in a batch.
 const BATCH: usize = 8;
+
+/// The place of the column that a field asks for, among columns of these names.
+pub(super) fn place_of(file: &Path, names: &[String], field: &Field) -> Result<usize, Error> {
+    let mut places = match &field.name {
+        ColumnName::Name(name) => (0..names.len()).filter(|i| names[*i] == *name).collect(),
+        ColumnName::Number(number) => vec![number.wrapping_sub(1)],
+        ColumnName::Row => Vec::new(),
+    };
+    let (Some(place), None) = (places.pop().filter(|i| *i < names.len()), places.pop()) else {
+        let found = format!("columns {}", quoted(names.join(", ").as_bytes()));
+        return Err(Error::content(file, Place::Column(field.name.to_string()), found, "one column of this name"));
+    };
+    Ok(place)
+}
 
 impl Column {
     /// Appends the next values, and what stamps are counted as.

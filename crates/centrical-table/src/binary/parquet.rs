@@ -14,10 +14,10 @@ use parquet::schema::types::ColumnDescPtr;
 
 use super::arrow;
 use super::catch_panic::catch_panic;
-use super::columnar::{Column, MISSING, Parts};
+use super::columnar::{Column, MISSING, Parts, place_of};
 use super::parquet_pages::{Checked, Pages};
-use crate::column::{ColumnName, Field, ROWS, Rule};
-use crate::error::{Error, Place, quoted};
+use crate::column::{Field, ROWS, Rule};
+use crate::error::{Error, Place};
 use crate::source::Source;
 use crate::stamp::{TickForm, TickUnit};
 
@@ -81,16 +81,7 @@ fn find(file: &Path, metadata: &ParquetMetaData, durations: &[String], field: &F
         Err(Error::content(file, Place::Column(field.name.to_string()), found, expected))
     };
     let columns = metadata.file_metadata().schema_descr().columns();
-    let names = column_names(metadata);
-    let mut places = match &field.name {
-        ColumnName::Name(name) => (0..columns.len()).filter(|i| names[*i] == *name).collect(),
-        ColumnName::Number(number) => vec![number.wrapping_sub(1)],
-        ColumnName::Row => Vec::new(),
-    };
-    let list = || quoted(names.join(", ").as_bytes());
-    let (Some(place), None) = (places.pop().filter(|i| *i < columns.len()), places.pop()) else {
-        return wrong(format!("columns {}", list()), "one column of this name");
-    };
+    let place = place_of(file, &column_names(metadata), field)?;
     match describe(&columns[place], durations, field.rule) {
         None => Ok(place),
         Some(other) => wrong(other, &field.expected),

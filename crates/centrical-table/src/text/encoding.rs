@@ -85,8 +85,20 @@ impl fmt::Display for TextEncoding {
     }
 }
 
+/// A text in UTF-8, made from UTF-16 where its beginning shows it; and that encoding.
+pub(crate) fn in_utf_8(mut input: Box<dyn Read + Send>) -> io::Result<(Box<dyn Read + Send>, Option<TextEncoding>)> {
+    let mut start = Vec::new();
+    (&mut input).take(SIGHT as u64).read_to_end(&mut start)?;
+    let encoding = TextEncoding::utf_16(&start);
+    let whole = io::Cursor::new(start).chain(input);
+    Ok(match encoding {
+        Some(encoding) => (Box::new(FromUtf16::new(whole, encoding)), Some(encoding)),
+        None => (Box::new(whole), None),
+    })
+}
+
 /// UTF-16 as UTF-8. Invalid characters are replaced, and are then not numbers.
-pub(crate) struct FromUtf16<R> {
+struct FromUtf16<R> {
     input: R,
     decoder: Decoder,
     raw: Vec<u8>,

@@ -4,6 +4,8 @@ use std::borrow::Cow;
 
 use memchr::memchr;
 
+use super::lines::TABLE;
+use crate::column::{ASCENDING, Backwards, Field};
 use crate::error::quoted;
 
 /// What stands wrong in a line.
@@ -12,6 +14,23 @@ pub(super) struct Fault {
     pub column: Option<String>,
     pub found: String,
     pub expected: String,
+}
+
+impl Fault {
+    pub fn no_table(found: String) -> Self {
+        Self { column: None, found, expected: TABLE.to_owned() }
+    }
+
+    /// A value that is below the one before it.
+    pub fn of(Backwards { field, found }: Backwards, fields: &[Field]) -> Self {
+        fields[field].fault(found, ASCENDING)
+    }
+}
+
+impl Field {
+    pub(super) fn fault(&self, found: String, expected: &str) -> Fault {
+        Fault { column: Some(self.name.to_string()), found, expected: expected.to_owned() }
+    }
 }
 
 /// What divides the fields of a line.

@@ -2,7 +2,7 @@
 
 use super::encoding::TextEncoding;
 use super::fields::{Delimiter, number};
-use super::piece::data_lines;
+use super::lines::{Line, is_data, numbered};
 use super::shape::Shape;
 use super::unit_words::{name_and_unit, unit};
 use crate::stamp::{self, StampKind};
@@ -58,7 +58,7 @@ pub struct StampColumn {
 impl TextForm {
     /// The form that the first lines show, turned into UTF-8 if `encoding` is UTF-16; `None` unless they are a table of numbers.
     pub(crate) fn of(text: &[u8], encoding: Option<TextEncoding>) -> Option<Self> {
-        let lines = data_lines(text);
+        let lines: Vec<Line> = numbered(text).filter(|(_, line)| is_data(line)).collect();
         let texts: Vec<&[u8]> = lines.iter().map(|(_, line)| *line).collect();
         let shape = Shape::of(&texts)?;
         let start = &texts[..=shape.first_row];

@@ -6,8 +6,10 @@ use memchr::{memchr2, memchr3};
 
 use super::batch::{Batch, ROWS};
 use super::fields::{Delimiter, Fault, number, unquoted};
+use super::lines::{is_data, numbered};
 use super::number::plain;
-use super::shape::is_number;
+use super::shape::{are_units, is_number};
+use super::unit_words::unit_in_any;
 use crate::column::{ColumnName, Field, LARGEST_NUMBER, Rows, Rule, is_missing};
 use crate::error::quoted;
 use crate::stamp;
@@ -31,10 +33,6 @@ impl Field {
             None => Err(self.fault(quoted(&text), &self.expected)),
         }
     }
-
-    pub(super) fn fault(&self, found: String, expected: &str) -> Fault {
-        Fault { column: Some(self.name.to_string()), found, expected: expected.to_owned() }
-    }
 }
 
 impl Layout {
@@ -56,8 +54,22 @@ impl Layout {
         (0..count).map(|field| Some(std::mem::take(texts.get_mut(place(field)?)?))).collect()
     }
 
+    /// The units of the fields, where a line is a row of units: those that are understood, in the order of the fields.
+    pub fn units(&self, line: &[u8]) -> Option<Vec<Option<&'static str>>> {
+        let texts = self.wanted_texts(line)?;
+        are_units(&texts).then(|| texts.iter().map(|text| unit_in_any(text)).collect())
+    }
+
+    /// Takes up how many fields the first row has: names of columns that no row has, and empty fields that have no name, are left
+    /// out.
+    pub fn fit(&mut self, row: &[u8]) {
+        let Ok(texts) = self.texts(row) else { return };
+        let is_empty = |text: &Cow<[u8]>| unquoted(text).is_empty();
+        self.resize(texts.len(), texts.get(self.fields()..).is_some_and(|rest| rest.iter().all(is_empty)));
+    }
+
     /// Has `columns` fields from now on, if none is lost that is wanted and others may be added.
-    pub fn resize(&mut self, columns: usize, may_grow: bool) {
+    fn resize(&mut self, columns: usize, may_grow: bool) {
         let needed = self.wanted.iter().rposition(Option::is_some).map_or(0, |last| last + 1);
         if (needed..=self.wanted.len()).contains(&columns) || may_grow && columns > self.wanted.len() {
             self.wanted.resize(columns, None);
@@ -92,6 +104,16 @@ impl Layout {
             _ => others.iter().any(could_stand) && others.iter().zip(&self.wanted[1..]).all(may_stand),
         };
         is_row && is_glued(first)
+    }
+
+    /// Refuses a row whose first cell a spreadsheet could not compute among the `above` lines before the first row, which looks like a comment.
+    pub fn check_comments(&self, text: &[u8], above: u64, fields: &[Field]) -> Result<(), (u64, Fault)> {
+        let mut row = vec![0.0; fields.len()];
+        let above = numbered(text).take_while(|(number, _)| *number < above);
+        for (number, line) in above.filter(|(_, line)| !is_data(line) && self.is_failed_row(line)) {
+            self.row(line, &mut row, fields).map_err(|fault| (number, fault))?;
+        }
+        Ok(())
     }
 
     /// What divides the fields, if it is one byte.

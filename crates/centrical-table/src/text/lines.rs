@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use memchr::{memchr, memchr_iter, memrchr};
 
-use super::encoding::{FromUtf16, SIGHT, TextEncoding};
+use super::encoding::in_utf_8;
 use crate::error::Error;
 use crate::source::Source;
 use crate::unpacking::Unpacked;
@@ -73,7 +73,7 @@ impl Plain {
 
     /// The same, ending with the last complete line.
     pub fn complete(mut self) -> io::Result<Self> {
-        self.length = self.complete_lines_length()?;
+        self.length = complete_lines(&self.source, b"\n")?;
         Ok(self)
     }
 
@@ -81,20 +81,6 @@ impl Plain {
     pub(super) fn pieces_from(&self, number: u64, most: usize) -> usize {
         let left = self.length.div_ceil(SIZE).saturating_sub(number);
         usize::try_from(left).unwrap_or(usize::MAX).min(most)
-    }
-
-    /// Bytes up to the end of the last complete line.
-    fn complete_lines_length(&self) -> io::Result<u64> {
-        let (mut end, mut bytes) = (self.length, Vec::new());
-        while end > 0 {
-            let start = end.saturating_sub(SIZE);
-            let read = self.fill(&mut bytes, 0, usize::try_from(end - start).unwrap_or(usize::MAX), start)?;
-            if let Some(last) = memrchr(b'\n', &bytes[..read]) {
-                return Ok(start + last as u64 + 1);
-            }
-            end = start;
-        }
-        Ok(0)
     }
 
     /// Reads the piece of that number; any thread may read any piece.
@@ -152,22 +138,15 @@ impl Plain {
 
 impl Packed {
     /// The text that `input` gives of a file of `length` bytes.
-    pub fn new(file: &Path, input: impl Read + Send + 'static, length: u64) -> Self {
+    pub fn new(file: &Path, input: Box<dyn Read + Send>, length: u64) -> Self {
         let input = Unpacked::new(input, length, None);
         Self { file: file.to_owned(), input: Box::new(input), is_begun: false, rest: Vec::new(), at_end: false }
     }
 
     /// Looks at the beginning: UTF-16 is turned into UTF-8.
     fn begin(&mut self) -> io::Result<()> {
-        let mut start = Vec::new();
-        (&mut self.input).take(SIGHT as u64).read_to_end(&mut start)?;
-        let encoding = TextEncoding::utf_16(&start);
-        let rest = std::mem::replace(&mut self.input, Box::new(io::empty()));
-        let whole = io::Cursor::new(start).chain(rest);
-        self.input = match encoding {
-            Some(encoding) => Box::new(FromUtf16::new(whole, encoding)),
-            None => Box::new(whole),
-        };
+        let input = std::mem::replace(&mut self.input, Box::new(io::empty()));
+        self.input = in_utf_8(input)?.0;
         Ok(())
     }
 
@@ -202,8 +181,38 @@ impl Packed {
     }
 }
 
+/// Bytes of a source up to the end of its last complete line, where these bytes end a line.
+pub(crate) fn complete_lines(source: &Source, newline: &[u8]) -> io::Result<u64> {
+    let width = newline.len() as u64;
+    let (mut end, mut bytes) = (source.length() / width * width, Vec::new());
+    while end > 0 {
+        let start = end.saturating_sub(SIZE);
+        bytes.clear();
+        source.reader_at(start).take(end - start).read_to_end(&mut bytes)?;
+        if let Some(last) = bytes.chunks_exact(newline.len()).rposition(|unit| unit == newline) {
+            return Ok(start + width * (last as u64 + 1));
+        }
+        end = start;
+    }
+    Ok(0)
+}
+
 /// What a text is expected to be.
 pub(super) const TABLE: &str = "a table of numbers as text";
+
+/// A line with its number, from 0.
+pub(super) type Line<'a> = (u64, &'a [u8]);
+
+/// The lines of a text without their ends.
+pub(super) fn numbered(text: &[u8]) -> impl Iterator<Item = Line<'_>> {
+    let mut rest = text;
+    let next = move || {
+        let line;
+        (line, rest) = if rest.is_empty() { return None } else { split_line(rest) };
+        Some(line)
+    };
+    (0..).zip(std::iter::from_fn(next))
+}
 
 /// What the beginning of a text holds if its lines end with CR alone, as those of some old loggers do.
 pub(super) fn ends_of_lines(text: &[u8]) -> Option<(u64, String)> {
@@ -222,4 +231,47 @@ pub(super) fn endless_line(text: &[u8]) -> Option<(u64, String)> {
 pub(super) fn before_line(text: &[u8], count: u64) -> usize {
     let last = usize::try_from(count).ok().and_then(|count| count.checked_sub(1));
     last.and_then(|last| memchr_iter(b'\n', text).nth(last)).map_or(0, |end| end + 1)
+}
+
+/// The first line without its end, and the rest.
+#[inline]
+pub(super) fn split_line(text: &[u8]) -> (&[u8], &[u8]) {
+    let (line, rest) = match memchr(b'\n', text) {
+        Some(end) => (&text[..end], &text[end + 1..]),
+        None => (text, &text[text.len()..]),
+    };
+    (line.strip_suffix(b"\r").unwrap_or(line), rest)
+}
+
+/// Whether a line is neither blank nor a comment.
+#[inline]
+pub(super) fn is_data(line: &[u8]) -> bool {
+    match line.first() {
+        None => false,
+        Some(b'#') => is_failed_cell(line),
+        // A row of a spreadsheet in which nothing stands.
+        Some(b';' | b',' | b'"') => !is_empty_row(line),
+        Some(b' ' | b'\t') => {
+            let text = line.trim_ascii_start();
+            !text.is_empty() && (text[0] != b'#' || is_failed_cell(text)) && !is_empty_row(text)
+        }
+        Some(_) => true,
+    }
+}
+
+/// Whether nothing but delimiters stands in a line.
+fn is_empty_row(line: &[u8]) -> bool {
+    line.iter().all(|byte| matches!(byte, b';' | b',' | b'\t' | b' ' | b'"'))
+}
+
+/// Whether a text that starts with `#` is not a comment but a row whose first cell a spreadsheet could not compute, as its first word alone
+/// shows; `Layout::is_failed_row` knows the other ones.
+#[cold]
+fn is_failed_cell(text: &[u8]) -> bool {
+    const FAILED: [&[u8]; 8] = [b"#N/A", b"#NUM!", b"#VALUE!", b"#DIV/0!", b"#REF!", b"#NAME?", b"#NULL!", b"#CALC!"];
+    let begins = |cell: &[u8]| {
+        let rest = text.get(..cell.len()).filter(|start| start.eq_ignore_ascii_case(cell)).map(|_| &text[cell.len()..]);
+        rest.is_some_and(|rest| rest.first().is_none_or(|next| matches!(next, b',' | b';' | b'\t' | b' ' | b'"')))
+    };
+    FAILED.into_iter().any(begins)
 }

@@ -1,14 +1,13 @@
 //! A piece of text: from its lines to rows of numbers, up to the first fault.
 
-use memchr::{memchr, memchr_iter, memrchr};
+use memchr::{memchr_iter, memrchr};
 
 use super::batch::{self, Batch, ROWS};
 use super::fields::Fault;
 use super::layout::Layout;
-use super::lines::{self, Text};
-use super::prologue::{Line, MOST_ABOVE, Prologue, Start};
+use super::lines::{self, Text, is_data, numbered, split_line};
 use super::separators::Separators;
-use crate::column::{ASCENDING, Field, Rows, runs_backwards};
+use crate::column::{Backwards, Field, Rows, runs_backwards};
 use crate::stamp::Stamps;
 
 /// A piece on its way from the file to the rows.
@@ -149,12 +148,11 @@ impl Piece {
 
     /// Sees that what should ascend does, row after row.
     fn check_times(&mut self, skipped: u64, fields: &[Field], rows: &Rows) {
-        for (field, column) in fields.iter().zip(rows).filter(|(field, _)| field.rule.ascends()) {
+        for (k, column) in rows.iter().enumerate().filter(|(k, _)| fields[*k].rule.ascends()) {
             if runs_backwards(column)
                 && let Some(row) = column.windows(2).position(|pair| pair[1] < pair[0])
             {
-                let found = format!("{} after {}", column[row + 1], column[row]);
-                let fault = Fault { column: Some(field.name.to_string()), found, expected: ASCENDING.to_owned() };
+                let fault = Fault::of(Backwards::new(k, column[row + 1], column[row]), fields);
                 self.fault = Some((self.line_of(row + 1, skipped), fault));
             }
         }
@@ -163,121 +161,7 @@ impl Piece {
     /// The line of a row, both counted from 0.
     #[cold]
     fn line_of(&self, row: usize, skipped: u64) -> u64 {
-        let (mut text, mut line) = (&*self.text, 0);
-        let mut left = row;
-        while !text.is_empty() {
-            let (this, rest) = split_line(text);
-            if line >= skipped && is_data(this) {
-                if left == 0 {
-                    break;
-                }
-                left -= 1;
-            }
-            (text, line) = (rest, line + 1);
-        }
-        line
+        let mut rows = numbered(&self.text).filter(|(line, text)| *line >= skipped && is_data(text));
+        rows.nth(row).map_or_else(|| numbered(&self.text).count() as u64, |(line, _)| line)
     }
-}
-
-impl Fault {
-    pub fn no_table(found: String) -> Self {
-        Self { column: None, found, expected: lines::TABLE.to_owned() }
-    }
-}
-
-impl Prologue {
-    /// Reads the lines before the first row, `first` lines of the file being before the text; nothing if there are only comments.
-    pub fn read(&mut self, text: &[u8], first: u64, fields: &[Field]) -> Result<Option<Start>, (u64, Fault)> {
-        let (mut rest, mut number) = (text, 0);
-        let mut lines = Vec::new();
-        while !rest.is_empty() && lines.len() <= MOST_ABOVE {
-            let line;
-            (line, rest) = split_line(rest);
-            if is_data(line) {
-                lines.push((number, line));
-            } else if lines.is_empty() {
-                self.comment(line);
-            }
-            number += 1;
-        }
-        if lines.is_empty() {
-            return Ok(None);
-        }
-        let start = self.start(&lines, first, fields)?;
-        if !start.has_header {
-            start.layout.check_comments(text, start.skipped, fields)?;
-        }
-        Ok(Some(start))
-    }
-}
-
-impl Layout {
-    /// Refuses a row whose first cell a spreadsheet could not compute among the `above` lines before the first row, which looks like a comment.
-    fn check_comments(&self, text: &[u8], above: u64, fields: &[Field]) -> Result<(), (u64, Fault)> {
-        let (mut rest, mut row) = (text, vec![0.0; fields.len()]);
-        for number in 0..above {
-            let line;
-            (line, rest) = split_line(rest);
-            if !is_data(line) && self.is_failed_row(line) {
-                self.row(line, &mut row, fields).map_err(|fault| (number, fault))?;
-            }
-        }
-        Ok(())
-    }
-}
-
-/// The first lines of a text that are neither blank nor comments, with their numbers from 0.
-pub(super) fn data_lines(text: &[u8]) -> Vec<Line<'_>> {
-    let (mut rest, mut number) = (text, 0);
-    let mut lines = Vec::new();
-    while !rest.is_empty() {
-        let line;
-        (line, rest) = split_line(rest);
-        lines.extend(is_data(line).then_some((number, line)));
-        number += 1;
-    }
-    lines
-}
-
-/// The first line without its end, and the rest.
-#[inline]
-fn split_line(text: &[u8]) -> (&[u8], &[u8]) {
-    let (line, rest) = match memchr(b'\n', text) {
-        Some(end) => (&text[..end], &text[end + 1..]),
-        None => (text, &text[text.len()..]),
-    };
-    (line.strip_suffix(b"\r").unwrap_or(line), rest)
-}
-
-/// Whether a line is neither blank nor a comment.
-#[inline]
-fn is_data(line: &[u8]) -> bool {
-    match line.first() {
-        None => false,
-        Some(b'#') => is_failed_cell(line),
-        // A row of a spreadsheet in which nothing stands.
-        Some(b';' | b',' | b'"') => !is_empty_row(line),
-        Some(b' ' | b'\t') => {
-            let text = line.trim_ascii_start();
-            !text.is_empty() && (text[0] != b'#' || is_failed_cell(text)) && !is_empty_row(text)
-        }
-        Some(_) => true,
-    }
-}
-
-/// Whether nothing but delimiters stands in a line.
-fn is_empty_row(line: &[u8]) -> bool {
-    line.iter().all(|byte| matches!(byte, b';' | b',' | b'\t' | b' ' | b'"'))
-}
-
-/// Whether a text that starts with `#` is not a comment but a row whose first cell a spreadsheet could not compute, as its first word alone
-/// shows; [`Layout::is_failed_row`] knows the other ones.
-#[cold]
-fn is_failed_cell(text: &[u8]) -> bool {
-    const FAILED: [&[u8]; 8] = [b"#N/A", b"#NUM!", b"#VALUE!", b"#DIV/0!", b"#REF!", b"#NAME?", b"#NULL!", b"#CALC!"];
-    let begins = |cell: &[u8]| {
-        let rest = text.get(..cell.len()).filter(|start| start.eq_ignore_ascii_case(cell)).map(|_| &text[cell.len()..]);
-        rest.is_some_and(|rest| rest.first().is_none_or(|next| matches!(next, b',' | b';' | b'\t' | b' ' | b'"')))
-    };
-    FAILED.into_iter().any(begins)
 }

@@ -7,15 +7,16 @@
 use std::borrow::Cow;
 
 use super::encoding::TextEncoding;
-use super::fields::{Delimiter, Fault, number, unquoted};
+use super::fields::{Delimiter, Fault, number};
 use super::layout::Layout;
-use super::shape::{Shape, after_preamble, are_units, is_number};
-use super::unit_words::{name_and_unit, unit_in_any};
+use super::lines::{Line, is_data, numbered};
+use super::shape::{Shape, after_preamble, is_number};
+use super::unit_words::name_and_unit;
 use crate::column::{ColumnName, Field, TableLines, UnitsFound};
 use crate::error::quoted;
 
 /// Lines in which a header is looked for.
-pub(super) const MOST_ABOVE: usize = 1000;
+const MOST_ABOVE: usize = 1000;
 
 /// The lines before the first row.
 pub(super) struct Prologue {
@@ -29,14 +30,11 @@ pub(super) struct Prologue {
 pub(super) struct Start {
     pub layout: Layout,
     /// Whether one of the lines before the first row holds the names.
-    pub has_header: bool,
+    has_header: bool,
     /// Lines of the text before the first row.
     pub skipped: u64,
     pub units: Option<UnitsFound>,
 }
-
-/// A line that is neither blank nor a comment, with its number from 0.
-pub(super) type Line<'a> = (u64, &'a [u8]);
 
 /// The header, or the first row of a text without a header.
 struct FirstLine {
@@ -53,15 +51,38 @@ impl Prologue {
         Self { comment: Vec::new(), said }
     }
 
+    /// Reads the lines before the first row, `first` lines of the file being before the text; nothing if there are only comments.
+    pub fn read(&mut self, text: &[u8], first: u64, fields: &[Field]) -> Result<Option<Start>, (u64, Fault)> {
+        let mut lines: Vec<Line> = Vec::new();
+        for (number, line) in numbered(text) {
+            if lines.len() > MOST_ABOVE {
+                break;
+            }
+            if is_data(line) {
+                lines.push((number, line));
+            } else if lines.is_empty() {
+                self.comment(line);
+            }
+        }
+        if lines.is_empty() {
+            return Ok(None);
+        }
+        let start = self.start(&lines, first, fields)?;
+        if !start.has_header {
+            start.layout.check_comments(text, start.skipped, fields)?;
+        }
+        Ok(Some(start))
+    }
+
     /// Notes a comment.
-    pub fn comment(&mut self, line: &[u8]) {
+    fn comment(&mut self, line: &[u8]) {
         if let Some(text) = line.trim_ascii_start().strip_prefix(b"#") {
             self.comment = text.to_vec();
         }
     }
 
     /// Finds the first row of a text from its first lines. `first` is the number of the first of all lines in the file, from 0.
-    pub fn start(&self, lines: &[Line], first: u64, fields: &[Field]) -> Result<Start, (u64, Fault)> {
+    fn start(&self, lines: &[Line], first: u64, fields: &[Field]) -> Result<Start, (u64, Fault)> {
         let lines = &lines[..lines.len().min(MOST_ABOVE)];
         let at = |index: usize| move |fault| (lines[index].0, fault);
         let begin = self.begin(lines, first, fields)?;
@@ -226,21 +247,5 @@ impl Field {
             [] => Err(self.fault(format!("columns {}", list()), "a column of this name")),
             _ => Err(self.fault(format!("two such columns in {}", list()), "one")),
         }
-    }
-}
-
-impl Layout {
-    /// The units of the fields, where a line is a row of units: those that are understood, in the order of the fields.
-    fn units(&self, line: &[u8]) -> Option<Vec<Option<&'static str>>> {
-        let texts = self.wanted_texts(line)?;
-        are_units(&texts).then(|| texts.iter().map(|text| unit_in_any(text)).collect())
-    }
-
-    /// Takes up how many fields the first row has: names of columns that no row has, and empty fields that have no name, are left
-    /// out.
-    fn fit(&mut self, row: &[u8]) {
-        let Ok(texts) = self.texts(row) else { return };
-        let is_empty = |text: &Cow<[u8]>| unquoted(text).is_empty();
-        self.resize(texts.len(), texts.get(self.fields()..).is_some_and(|rest| rest.iter().all(is_empty)));
     }
 }

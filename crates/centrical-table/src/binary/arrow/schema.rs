@@ -8,9 +8,10 @@ use polars_arrow_format::ipc::{
 };
 
 use super::super::arrays::{Array, ArrayColumn, Bytes, Scalar, ScalarKind};
+use super::super::columnar::place_of;
 use super::messages::{CONTINUATION, damaged};
-use crate::column::{ColumnName, Field, Rule};
-use crate::error::{Error, Place, quoted};
+use crate::column::{Field, Rule};
+use crate::error::{Error, Place};
 use crate::stamp::{TickForm, TickUnit};
 
 /// A column that a field asks for.
@@ -53,15 +54,7 @@ pub(super) fn find(file: &Path, schema: SchemaRef, fields: &[Field]) -> Result<V
         let wrong = |found: String, expected: &str| {
             Err(Error::content(file, Place::Column(field.name.to_string()), found, expected))
         };
-        let mut places = match &field.name {
-            ColumnName::Name(name) => (0..columns.len()).filter(|i| names[*i] == *name).collect(),
-            ColumnName::Number(number) => vec![number.wrapping_sub(1)],
-            ColumnName::Row => Vec::new(),
-        };
-        let (Some(place), None) = (places.pop().filter(|i| *i < columns.len()), places.pop()) else {
-            let list = quoted(names.join(", ").as_bytes());
-            return wrong(format!("columns {list}"), "one column of this name");
-        };
+        let place = place_of(file, &names, field)?;
         let (mut node, mut buffer, mut limits) = (0, 0, LIMITS);
         for (column, name) in columns[..place].iter().zip(&names) {
             let Some((nodes, buffers)) = size(column, &mut limits).map_err(failed)? else {
