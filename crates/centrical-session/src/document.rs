@@ -28,10 +28,9 @@ mod watch;
 mod words;
 
 pub use self::added::AddedReport;
-pub(crate) use self::assessment::Assessed;
 pub use self::assessment::{
-    AssessedFit, AssessedParameter, AssessedPlateau, AssessmentReport, CompensatedUncertainty, ImprovementSummary,
-    LeftOutPlateau, WithoutOutliers,
+    AssessedFit, AssessedParameter, AssessedPlateau, Assessment, AssessmentReport, CompensatedUncertainty,
+    ImprovementSummary, LeftOutPlateau, WithoutOutliers,
 };
 pub use self::comparison::{ComparedResultSummary, ComparisonReport, DifferenceSummary, PairComparison};
 pub use self::compensation::{COMPENSATION_SCHEMA, CompensationReport, FirstReading, ReadingsBeyond};
@@ -49,7 +48,6 @@ pub use self::history::{
 pub use self::history_list::{Doubt, DoubtKind, HistoryLine, HistoryList};
 pub(crate) use self::json::line as json_line;
 pub use self::models::{CandidateSummary, ModelsReport, NestedTestSummary, TermSupport};
-pub(crate) use self::montecarlo::Repeated;
 pub use self::montecarlo::{MonteCarloReport, RepeatedFit, RepeatedParameter, SquareSummary};
 pub use self::noise::{NoiseAnalysis, ReadingNoise};
 pub use self::observability::{
@@ -71,7 +69,7 @@ pub use self::result::{
     MountingPrediction, MountingSummary, NextAttitudeSummary, ObservabilitySummary, OutlyingPlateau, OutputSummary,
     ParameterEstimate, PatternSummary, PlateauSummary, PositionSummary, PriorSummary, Program, RestsOn,
     ResultObjection, RivalSize, RivalSummary, SCHEMA, SessionSummary, SpeedDifference, SpeedFinding, SpeedsSummary,
-    TermSummary, ValiditySummary, unit_name,
+    ValiditySummary, unit_name,
 };
 pub use self::series::{FailedSession, SeriesSummary};
 pub use self::simulation::SimulationReport;

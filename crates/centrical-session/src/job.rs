@@ -22,7 +22,7 @@ mod simulate;
 mod tumble;
 mod watch;
 
-pub use self::assess::{Assessment, AssessmentRequest, assess};
+pub use self::assess::{AssessmentRequest, assess};
 pub use self::axes::Axes;
 pub use self::calibrate::{calibrate, calibrate_reduced, calibrate_without};
 pub use self::compare::{ComparisonRequest, compare_results};
@@ -33,7 +33,7 @@ pub use self::history::{
     read_calibrations, read_limits, station_history, unit_history, unit_history_among, unit_means, units_history,
 };
 pub use self::history::{add_result, add_results, check_store, collect_results, list_store, refuse_date, spelling};
-pub use self::init::{Draft, FillIn, InitRequest, init, time_column};
+pub use self::init::{Draft, InitRequest, init, time_column};
 pub use self::models::select_model;
 pub use self::montecarlo::{MonteCarloCase, MonteCarloRequest};
 pub use self::noise::{NoiseRequest, noise_of, noise_of_plateau};

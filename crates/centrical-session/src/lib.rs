@@ -39,7 +39,7 @@ pub use centrical_table::{
     harmless_line, refuse_inputs, write_stream, write_whole,
 };
 pub use document::{
-    AddedReport, AssessedFit, AssessedParameter, AssessedPlateau, AssessmentReport, CandidateSummary,
+    AddedReport, AssessedFit, AssessedParameter, AssessedPlateau, Assessment, AssessmentReport, CandidateSummary,
     ComparedResultSummary, ComparisonReport, CompensatedUncertainty, CompensationReport, DifferenceSummary,
     DocumentKind, DocumentsReport, Doubt, DoubtKind, DraftReport, FirstReading, HistoryLine, HistoryList,
     ImprovementSummary, LeftOutPlateau, LineToFillIn, ModelsReport, MonteCarloReport, NestedTestSummary, ObjectionName,
@@ -60,8 +60,8 @@ pub use document::{
     PatternSummary, PlanReport, PlannedMounting, PlannedPlateau, PlateauDriftVerdict, PlateauSummary, PositionSummary,
     PredictedParameter, PredictionReport, PriorSummary, Program, ReadingNoise, ReasonReport, RemedyReport,
     RepeatedPlateau, RestsOn, ResultObjection, RivalSize, RivalSummary, SCHEMA, SessionDriftVerdict, SessionSummary,
-    SessionTrend, SightReport, SpeedDifference, SpeedFinding, SpeedsSummary, StepReport, Subject, TermSummary,
-    TiltSummary, TiltVerdict, ValiditySummary, WatchState, WatchedPlateau, read_history, unit_name,
+    SessionTrend, SightReport, SpeedDifference, SpeedFinding, SpeedsSummary, StepReport, Subject, TiltSummary,
+    TiltVerdict, ValiditySummary, WatchState, WatchedPlateau, read_history, unit_name,
 };
 pub use document::{
     BatchSummary, BatchWithoutUnit, BeyondLimit, CapabilitySummary, ChartKind, ChartReport, ChartRule, ChartSignal,
@@ -76,7 +76,7 @@ pub use experiment::{
     Turning, available_time, read_plateaus, write_plateaus,
 };
 pub use job::{
-    Assessment, AssessmentRequest, Axes, ComparisonRequest, Compensated, CompensationRequest, Draft, FillIn,
+    AssessmentRequest, Axes, ComparisonRequest, Compensated, CompensationRequest, Draft,
     InitRequest, LiveRequest, MonteCarloCase, MonteCarloRequest, NoiseRequest, PlanRequest, Recorded,
     SeriesRequest, SettingsForm, Tumble, TumbleRequest, USUAL_LEVELS, USUAL_TIMES, Watch, WatchEnd, WatchEvent,
     WatchProgress, WatchRequest, add_result, add_results, assess, calibrate, calibrate_reduced, calibrate_series,
@@ -101,7 +101,8 @@ pub use record::{
 };
 pub use reduced::{MountingFindings, Reduced, ReducedPlateau, Steadiness};
 pub use store::{
-    Added, Depth, Failure, Row, RowPrior, RowTable, RowTerm, Rows, Selection, SharedInfluence, Status, Store, sha256,
+    Added, Depth, Failure, Row, RowPrior, RowTable, Rows, Selection, SharedInfluence, Status, Store, TermSummary,
+    sha256,
 };
 pub use truth::Truth;
 pub use units::{MICRO_G, Symbol, Unit, UnknownUnit, customary, rpm};

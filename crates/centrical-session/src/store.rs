@@ -15,7 +15,8 @@ mod writing;
 
 pub use self::folder::Store;
 pub use self::reading::{Rows, Selection};
-pub use self::row::{Failure, Row, RowPrior, RowTerm, SharedInfluence, Status, days_since_1970, sha256};
+pub use self::row::{Failure, Row, RowPrior, SharedInfluence, Status, TermSummary, days_since_1970, sha256};
 pub use self::schema::Depth;
+pub(crate) use self::schema::whole;
 pub use self::table::RowTable;
 pub use self::writing::Added;

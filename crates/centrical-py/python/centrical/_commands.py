@@ -165,7 +165,7 @@ def observe(subject: Path | Session, combinations: Iterable[str] = ()) -> Docume
 def assess(
     session: Path | Session,
     *,
-    coverage: float = 0.9545,
+    coverage: float = 0.954499736103642,
     without_outliers: float | None = None,
     scale_by_residuals: bool = False,
     range: Quantity | None = None,
@@ -264,7 +264,7 @@ def plan(
     svg: Path | None = None,
     levels: Sequence[float] | None = None,
     certify: bool = False,
-    coverage: float = 0.9545,
+    coverage: float = 0.954499736103642,
 ) -> Plan:
     """The schedule with the smallest uncertainty in the time available, or the shortest that meets the goals.
 

@@ -1,13 +1,13 @@
 //! Expanded uncertainties, as all documents state them: for one probability, with the coverage factor that belongs to it.
 
 use centrical::uncertainty::Degrees;
-use centrical_session::{CalibrationResult, ParameterEstimate};
+use centrical_session::{CalibrationResult, ParameterEstimate, PredictionReport};
 
 /// Coverage factor where the degrees of freedom are infinite.
 const COVERAGE_FACTOR: f64 = 2.0;
 
-/// Probability that expanded uncertainties cover: that of two standard uncertainties in a normal distribution (EA-4/02, 5.1).
-pub(crate) const COVERAGE_PROBABILITY: f64 = 0.954_499_736_103_642;
+/// Probability that expanded uncertainties cover.
+pub(crate) const COVERAGE_PROBABILITY: f64 = PredictionReport::COVERAGE;
 
 /// An expanded uncertainty.
 #[derive(Debug, Clone, Copy, PartialEq)]

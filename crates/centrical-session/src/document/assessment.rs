@@ -1,10 +1,11 @@
 //! How far a calibration can be trusted, as a document: schema `centrical-assessment/1`.
 
-use centrical::uncertainty::{Budget, CurvePoint, Degrees, Improvement, Pattern, PlateauCheck, Validity};
+use centrical::uncertainty::{Budget, CurvePoint, Improvement, Pattern, PlateauCheck, Validity};
 use centrical::{Experiment, Fit, Group, MeasurementModel, Source, Termination};
 use serde::Serialize;
 
 use super::documents::ObjectionName;
+use super::json::finite_degrees;
 use super::result::{BudgetSummary, Program, ResultObjection, ValiditySummary};
 
 /// Name of the schema's present version.
@@ -143,28 +144,39 @@ pub struct CompensatedUncertainty {
     pub along: f64,
 }
 
-/// What an assessment found, in the terms of the numerics.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Assessed<'a> {
-    pub model: &'a MeasurementModel,
+/// How far a calibration can be trusted.
+#[derive(Debug)]
+pub struct Assessment {
+    /// Title of the session.
+    pub title: String,
+    /// Whether the noise and the speed of the plateaus are scaled by the residuals.
+    pub scaled_by_residuals: bool,
+    /// The model.
+    pub model: MeasurementModel,
     /// The fit of all plateaus.
-    pub fit: &'a Fit,
-    /// The fit without outlying plateaus, and these with their probabilities.
-    pub cleaned: Option<(&'a Fit, &'a [(usize, f64)])>,
-    pub budget: &'a Budget,
-    pub validity: &'a Validity,
-    pub patterns: &'a [Pattern],
-    pub prediction: Option<&'a [Vec<CurvePoint>; 3]>,
-    pub objections: &'a [ResultObjection],
+    pub fit: Fit,
+    /// If it was asked for, the fit without outlying plateaus, on which what follows rests then; and these, by set point, each
+    /// with its probability at the time.
+    pub cleaned: Option<(Fit, Vec<(usize, f64)>)>,
+    /// What each source of uncertainty leaves.
+    pub budget: Budget,
+    /// Whether the residuals are those of a true model.
+    pub validity: Validity,
+    /// Patterns in the residuals.
+    pub patterns: Vec<Pattern>,
+    /// Uncertainty of a compensated reading along each instrument axis; `None` while a coefficient is not determined.
+    pub prediction: Option<[Vec<CurvePoint>; 3]>,
+    /// The objections to the calibration that the above rests on, as [`calibrate`](crate::calibrate()) has them.
+    pub objections: Vec<ResultObjection>,
 }
 
-impl AssessmentReport {
-    /// The assessment of a session of that title, expanded uncertainties for a probability of `coverage`.
-    pub(crate) fn of(assessed: &Assessed, title: &str, coverage: f64, scaled_by_residuals: bool) -> Self {
-        let Assessed { model, fit, cleaned, budget, validity, patterns, prediction, objections } = *assessed;
+impl Assessment {
+    /// The assessment as a document, expanded uncertainties for a probability of `coverage`.
+    pub fn report(&self, coverage: f64) -> AssessmentReport {
+        let Self { model, fit, cleaned, budget, validity, patterns, prediction, objections, .. } = self;
         let (experiment, parameters) = (model.experiment(), model.parameters());
         let count = parameters.len();
-        let used = cleaned.map_or(fit, |(without, _)| without);
+        let used = cleaned.as_ref().map_or(fit, |(without, _)| without);
         let own: Vec<usize> = (0..count).filter(|&j| parameters[j].is_of_instrument()).collect();
         let improvement = |i: &Improvement| ImprovementSummary {
             source: i.source,
@@ -174,21 +186,23 @@ impl AssessmentReport {
             factor: i.most_factor,
         };
         let row = |i: usize| (0..count).map(|j| budget.covariance(i, j)).collect();
-        Self {
+        AssessmentReport {
             schema: ASSESSMENT_SCHEMA,
             program: Program::this(),
-            title: title.to_owned(),
+            title: self.title.clone(),
             coverage,
-            scaled_by_residuals,
+            scaled_by_residuals: self.scaled_by_residuals,
             fit: AssessedFit::of(fit),
-            without_outliers: cleaned.map(|(fit, left_out)| WithoutOutliers::of(experiment, fit, left_out)),
+            without_outliers: cleaned.as_ref().map(|(fit, left_out)| WithoutOutliers::of(experiment, fit, left_out)),
             parameters: (0..count).map(|j| AssessedParameter::of(model, used, budget, coverage, j)).collect(),
             covariance: (0..count).map(row).collect(),
             budget: BudgetSummary::new(budget, count, &[]),
             improvements: budget.improvements(&own).iter().map(improvement).collect(),
             validity: ValiditySummary::new(experiment, validity, patterns),
             plateaus: validity.plateaus.iter().map(|check| AssessedPlateau::of(experiment, check)).collect(),
-            prediction: prediction.map(|curves| curves.each_ref().map(|curve| curve.iter().map(Into::into).collect())),
+            prediction: prediction
+                .as_ref()
+                .map(|curves| curves.each_ref().map(|curve| curve.iter().map(Into::into).collect())),
             acceptable: objections.is_empty(),
             objections: objections.iter().map(Into::into).collect(),
         }
@@ -223,10 +237,7 @@ impl AssessedParameter {
             group: parameter.group,
             value: fit.value(j),
             standard_uncertainty,
-            degrees_of_freedom: degrees.and_then(|degrees| match degrees {
-                Degrees::Finite(nu) => Some(nu),
-                Degrees::Infinite => None,
-            }),
+            degrees_of_freedom: degrees.and_then(finite_degrees),
             coverage_factor: factor,
             expanded_uncertainty: standard_uncertainty.zip(factor).map(|(u, k)| k * u),
         }

@@ -3,9 +3,9 @@
 use centrical::{Group, Source};
 
 use super::documents::ObjectionName;
-use super::result::{CalibrationResult, ParameterEstimate, PriorSummary, TermSummary};
+use super::result::{CalibrationResult, ParameterEstimate, PriorSummary};
 use super::words::Word;
-use crate::store::{Row, RowPrior, RowTerm, SharedInfluence, Status, days_since_1970, sha256};
+use crate::store::{Row, RowPrior, SharedInfluence, Status, days_since_1970, sha256, whole};
 
 impl CalibrationResult {
     /// The row of the result, whose file has these `bytes`.
@@ -48,7 +48,7 @@ impl CalibrationResult {
             output_unit: raw_output.map_or_else(String::new, |output| output.unit.clone()),
             output_scale: raw_output.map_or_else(Vec::new, |output| output.scale.to_vec()),
             output_bias: raw_output.map_or_else(Vec::new, |output| output.bias.to_vec()),
-            terms: self.row_terms(),
+            terms: self.model.error_model.clone(),
             shared_known: shared.is_some(),
             shared: shared.unwrap_or_default(),
             priors_known: priors.is_some(),
@@ -69,12 +69,6 @@ impl CalibrationResult {
     fn packed_covariance(&self) -> Vec<f64> {
         let rows = self.covariance.iter().enumerate();
         rows.flat_map(|(i, row)| row.iter().take(i + 1).map(|c| c.unwrap_or(f64::NAN))).collect()
-    }
-
-    fn row_terms(&self) -> Vec<RowTerm> {
-        let term =
-            |t: &TermSummary| RowTerm { name: t.name.clone(), axis: t.axis, powers: t.powers, sign_of: t.sign_of };
-        self.model.error_model.iter().map(term).collect()
     }
 
     /// Largest magnitude of the specific force on each axis; of the readings in results of older programs.
@@ -116,8 +110,4 @@ impl CalibrationResult {
         }
         Some(shared)
     }
-}
-
-fn whole(number: usize) -> i64 {
-    i64::try_from(number).unwrap_or(i64::MAX)
 }

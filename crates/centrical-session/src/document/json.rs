@@ -1,6 +1,8 @@
-//! Documents as JSON text, a line end at the end; characters that are not shown are escaped.
+//! Documents as JSON text, a line end at the end; characters that are not shown are escaped. And numbers as documents have them.
 
+use centrical::uncertainty::Degrees;
 use centrical_table::escaped;
+use nalgebra::Matrix3;
 use serde::Serialize;
 
 use crate::error::Error;
@@ -38,4 +40,17 @@ fn ended(document: &'static str, text: serde_json::Result<String>) -> Result<Str
 /// A number, or nothing in place of one that does not exist.
 pub(super) fn finite(value: f64) -> Option<f64> {
     value.is_finite().then_some(value)
+}
+
+/// Degrees of freedom, or nothing where they are infinite.
+pub(super) fn finite_degrees(degrees: Degrees) -> Option<f64> {
+    match degrees {
+        Degrees::Finite(nu) => Some(nu),
+        Degrees::Infinite => None,
+    }
+}
+
+/// A matrix row by row.
+pub(super) fn rows(matrix: &Matrix3<f64>) -> [[f64; 3]; 3] {
+    matrix.transpose().into()
 }

@@ -1,6 +1,6 @@
 //! The calibration repeated on drawn readings, as a document: schema `centrical-montecarlo/1`.
 
-use centrical::uncertainty::{MonteCarlo, ParameterStatistics, WeightedSquare};
+use centrical::uncertainty::{Method, MonteCarlo, ParameterStatistics, Settings, WeightedSquare};
 use centrical::{Group, Parameters};
 use serde::Serialize;
 
@@ -48,6 +48,15 @@ pub enum RepeatedFit {
     Linear,
 }
 
+impl From<Method> for RepeatedFit {
+    fn from(method: Method) -> Self {
+        match method {
+            Method::Exact => Self::Exact,
+            Method::Linear => Self::Linear,
+        }
+    }
+}
+
 /// One unknown over all runs, SI. All figures are null where the data do not determine it.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct RepeatedParameter {
@@ -89,19 +98,9 @@ pub struct SquareSummary {
     pub distance_once_in_twenty: Option<f64>,
 }
 
-/// What was repeated, and how.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Repeated<'a> {
-    pub parameters: &'a Parameters,
-    pub truth: &'a [f64],
-    pub seed: u64,
-    pub fit: RepeatedFit,
-    pub coverage: f64,
-}
-
 impl MonteCarloReport {
-    pub(crate) fn of(repeated: &Repeated, monte_carlo: &MonteCarlo) -> Self {
-        let Repeated { parameters, truth, seed, fit, coverage } = *repeated;
+    /// What runs with these `settings` gave, of a unit with these true values.
+    pub(crate) fn of(parameters: &Parameters, truth: &[f64], settings: &Settings, monte_carlo: &MonteCarlo) -> Self {
         let runs = monte_carlo.runs;
         let parameter = |j: usize| {
             let statistics = monte_carlo.parameters[j].filter(|_| runs > 0);
@@ -121,11 +120,11 @@ impl MonteCarloReport {
         Self {
             schema: MONTE_CARLO_SCHEMA,
             program: Program::this(),
-            seed,
-            fit,
+            seed: settings.seed,
+            fit: settings.method.into(),
             runs,
             failures: monte_carlo.failures,
-            coverage,
+            coverage: settings.coverage,
             parameters: (0..parameters.len()).map(parameter).collect(),
             weighted_square: SquareSummary::of(&monte_carlo.weighted_square, runs),
             chi_squared: SquareSummary::of(&monte_carlo.chi_squared, runs),

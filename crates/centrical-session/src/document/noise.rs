@@ -7,6 +7,7 @@ use centrical::stability::{Analysis, Coefficient, Deviation, Estimator, NoiseTer
 use centrical_table::{escaped, write_whole};
 use serde_json::{Value, json};
 
+use super::result::Program;
 use crate::error::Error;
 
 /// Name of the schema's present version.
@@ -56,7 +57,7 @@ impl NoiseAnalysis {
     pub fn to_json(&self) -> String {
         let whole = json!({
             "schema": NOISE_SCHEMA,
-            "program": {"name": "centrical", "version": env!("CARGO_PKG_VERSION")},
+            "program": Program::this(),
             "file": self.file_name(),
             "window": self.window,
             "confidence": self.confidence,

@@ -250,7 +250,7 @@ impl ObservabilityReport {
         let count = seen.columns();
         Ok(Self {
             schema: OBSERVABILITY_SCHEMA,
-            program: Program { name: "centrical".to_owned(), version: env!("CARGO_PKG_VERSION").to_owned() },
+            program: Program::this(),
             title: subject.title.clone(),
             weighted_by: subject.weighted_by.clone(),
             pair_relation: subject.model.experiment().pair_relation.name(),

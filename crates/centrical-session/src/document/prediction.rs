@@ -1,10 +1,10 @@
 //! What a plan will know, as data for documents.
 
 use centrical::plan::{Prediction, ReadingRange};
-use centrical::uncertainty::Degrees;
 use centrical::{FitError, Group};
 use serde::Serialize;
 
+use super::json::finite_degrees;
 use super::result::RestsOn;
 
 /// Points of the curve of the compensated reading, from 0 to the range.
@@ -54,8 +54,8 @@ pub struct PredictedParameter {
 }
 
 impl PredictionReport {
-    /// The usual probability: that of all documents.
-    pub const COVERAGE: f64 = 0.9545;
+    /// The usual probability, that of all documents: of two standard uncertainties in a normal distribution (EA-4/02, 5.1).
+    pub const COVERAGE: f64 = 0.954_499_736_103_642;
 
     /// The report of a prediction.
     ///
@@ -74,10 +74,7 @@ impl PredictionReport {
                 type_a: prediction.type_a(j),
                 combined,
                 expanded: combined.zip(degrees).map(|(u, degrees)| u * degrees.coverage_factor(coverage)),
-                degrees_of_freedom: degrees.and_then(|degrees| match degrees {
-                    Degrees::Finite(nu) => Some(nu),
-                    Degrees::Infinite => None,
-                }),
+                degrees_of_freedom: degrees.and_then(finite_degrees),
                 is_affected_by_null_space: combined.is_some() && prediction.is_affected_by_null_space(j),
             }
         };

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use serde::Serialize;
 
+use super::json::rows;
 use super::result::Program;
 use super::steadiness::LeftOutSummary;
 use crate::experiment::Session;
@@ -72,11 +73,11 @@ impl ReductionReport {
     /// A session that was reduced into `folder`.
     pub fn of(session: &Session, reduced: &Reduced, folder: &Path) -> Self {
         let set_points = &session.experiment.set_points;
-        let mut rows = Vec::with_capacity(set_points.len());
+        let mut plateaus = Vec::with_capacity(set_points.len());
         let table = reduced.table(session);
         for (n, (row, plateau)) in table.iter().zip(&reduced.plateaus).enumerate() {
             let before = set_points[..n].iter();
-            rows.push(ReducedPlateauSummary {
+            plateaus.push(ReducedPlateauSummary {
                 mounting: row.mounting + 1,
                 index: before.filter(|other| other.mounting == row.mounting).count(),
                 speed: row.speed,
@@ -86,7 +87,7 @@ impl ReductionReport {
                 samples: plateau.samples,
                 left_out: plateau.steadiness.map(|steadiness| steadiness.left_out.into()),
                 mean: plateau.mean.into(),
-                covariance: plateau.covariance.transpose().into(),
+                covariance: rows(&plateau.covariance),
             });
         }
         let unscheduled = |(mounting, findings): (usize, &MountingFindings)| -> Vec<UnscheduledPlateau> {
@@ -99,7 +100,7 @@ impl ReductionReport {
             folder: folder.display().to_string(),
             interpolated: reduced.interpolated(),
             unscheduled: (1..).zip(&reduced.mountings).flat_map(unscheduled).collect(),
-            plateaus: rows,
+            plateaus,
         }
     }
 }

@@ -27,7 +27,6 @@ pub use self::rivals::{RestsOn, RivalSize, RivalSummary};
 pub use self::schema::{
     CalibrationResult, ConvergenceSummary, FitSummary, Method, ModelSummary, MountingSummary, ObservabilitySummary,
     OutputSummary, ParameterEstimate, PlateauSummary, PositionSummary, PriorSummary, Program, SCHEMA, SessionSummary,
-    TermSummary,
 };
 pub use self::speeds::{DifferenceExtent, FollowedSpeeds, SpeedDifference, SpeedFinding, SpeedsSummary};
 pub use self::verdict::ResultObjection;

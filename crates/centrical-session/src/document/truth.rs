@@ -5,6 +5,7 @@ use centrical::{Kind, Parameter, SetPoint};
 use nalgebra::Vector3;
 use serde_json::{Value, json};
 
+use super::result::Program;
 use crate::experiment::Session;
 use crate::truth::Truth;
 
@@ -52,7 +53,7 @@ pub(crate) fn truth_json(truth: &Truth, seed: u64, written: &WrittenSession) -> 
         mountings.iter().enumerate().flat_map(|(m, written)| plateaus_of(&truth.plan, m, &written.plateaus)).collect();
     let mut whole = json!({
         "schema": SCHEMA,
-        "program": {"name": "centrical", "version": env!("CARGO_PKG_VERSION")},
+        "program": Program::this(),
         "seed": seed,
         "parameters": parameters,
         "settings": equipment(&truth.equipment),

@@ -10,24 +10,29 @@ use super::toml_path::TomlPath;
 use crate::error::{Error, quoted};
 use crate::quantity::{Dimension, Quantity};
 
-/// The quantities beside effects.
-const QUANTITIES: [&str; 15] = [
-    "gravity",
-    "latitude",
-    "radius",
-    "radius_difference",
-    "speed_scale",
-    "plateau_speed",
-    "rest_angle",
-    "proof_masses",
-    "attitude",
-    "bias_change",
-    "mounting_bias",
-    "mounting_scale",
-    "resolution",
-    "reading_noise",
-    "doubt",
+/// The quantities beside effects, their dimensions, and what is beyond reason, where a unit was mistaken: for gravity twice its range over the
+/// Earth; 0.1 m and rad of what a machine sets, 1 rad, 10 m/s^2, 100 %.
+const QUANTITIES: [(&str, Dimension, f64); 15] = [
+    ("gravity", Dimension::Acceleration, 0.1),
+    ("latitude", Dimension::Angle, 1.0),
+    ("radius", Dimension::Length, 0.1),
+    ("radius_difference", Dimension::Length, 0.1),
+    ("speed_scale", Dimension::Ratio, 1.0),
+    ("plateau_speed", Dimension::Ratio, 1.0),
+    ("rest_angle", Dimension::Angle, 0.1),
+    ("proof_masses", Dimension::Length, 0.1),
+    ("attitude", Dimension::Angle, 1.0),
+    ("bias_change", Dimension::Acceleration, 10.0),
+    ("mounting_bias", Dimension::Acceleration, 10.0),
+    ("mounting_scale", Dimension::Ratio, 1.0),
+    ("resolution", Dimension::Acceleration, 10.0),
+    ("reading_noise", Dimension::Acceleration, 10.0),
+    ("doubt", Dimension::Ratio, 1.0),
 ];
+
+fn is_quantity(name: &str) -> bool {
+    QUANTITIES.iter().any(|(own, ..)| *own == name)
+}
 
 /// Standard uncertainty of an unknown change of bias [m/s^2]: ten times a typical bias.
 pub(crate) const ANY_BIAS: f64 = 0.5;
@@ -41,28 +46,26 @@ pub(crate) fn type_b(
     error_model: &ErrorModel,
     speeds: &Speeds,
 ) -> Result<TypeB, Error> {
-    let plateau_speed = speeds.set_uncertainty;
     let at = TomlPath::table(file, "uncertainty");
-    let read = |key: &str, dimension, largest| {
+    let mut stated = [None; QUANTITIES.len()];
+    for (stated, (key, dimension, largest)) in stated.iter_mut().zip(QUANTITIES) {
         let meaning = "a standard uncertainty, zero or more and not beyond reason";
-        table.get(key).map(|q| at.bounded(key, q, dimension, (0.0, largest), meaning)).transpose()
-    };
-    // Beyond these a unit was mistaken: 0.1 m and rad of what a machine sets, 1 rad, 10 m/s^2, 100 %; for gravity twice its range over the Earth.
-    let length = |key| read(key, Dimension::Length, 0.1);
-    let angle = |key| read(key, Dimension::Angle, 1.0);
-    let acceleration = |key| read(key, Dimension::Acceleration, 10.0);
-    let ratio = |key| read(key, Dimension::Ratio, 1.0);
-    let radius = length("radius")?.unwrap_or(0.0);
-    let radius_difference = length("radius_difference")?;
+        let read = |quantity| at.bounded(key, quantity, dimension, (0.0, largest), meaning);
+        *stated = table.get(key).map(read).transpose()?;
+    }
+    let [gravity, latitude, radius, radius_difference, speed_scale, plateau_speed, others @ ..] = stated;
+    let [rest_angle, proof_masses, attitude, bias_change, mounting_bias, mounting_scale, others @ ..] = others;
+    let [resolution, reading_noise, doubt] = others;
+    let radius = radius.unwrap_or(0.0);
     if let Some(difference) = radius_difference.filter(|d| *d > std::f64::consts::SQRT_2 * radius) {
         let expected = "at most sqrt(2) times radius, the difference of seats measured independently";
         return Err(at.unexpected("radius_difference", format!("{difference} m"), expected));
     }
-    if let Some(speed) = ratio("plateau_speed")?.filter(|speed| *speed != plateau_speed) {
-        let expected = format!("{plateau_speed}, the speed_uncertainty of [centrifuge], or nothing");
+    let set_uncertainty = speeds.set_uncertainty;
+    if let Some(speed) = plateau_speed.filter(|speed| *speed != set_uncertainty) {
+        let expected = format!("{set_uncertainty}, the speed_uncertainty of [centrifuge], or nothing");
         return Err(at.unexpected("plateau_speed", speed.to_string(), expected));
     }
-    let speed_scale = ratio("speed_scale")?;
     let of_measured = speeds.measured.and_then(|measured| measured.scale);
     if let (Some(stated), Some(scale)) = (speed_scale, of_measured)
         && stated != scale
@@ -71,20 +74,20 @@ pub(crate) fn type_b(
         return Err(at.unexpected("speed_scale", stated.to_string(), expected));
     }
     Ok(TypeB {
-        gravity: read("gravity", Dimension::Acceleration, 0.1)?.unwrap_or(0.0),
-        latitude: angle("latitude")?.unwrap_or(0.0),
+        gravity: gravity.unwrap_or(0.0),
+        latitude: latitude.unwrap_or(0.0),
         radius,
         radius_difference,
         speed_scale: speed_scale.unwrap_or(speeds.scale()),
-        rest_angle: read("rest_angle", Dimension::Angle, 0.1)?.unwrap_or(0.0),
-        proof_masses: length("proof_masses")?.unwrap_or(0.0),
-        attitude: angle("attitude")?.unwrap_or(0.0),
-        bias_change: acceleration("bias_change")?.unwrap_or(ANY_BIAS),
-        mounting_bias: acceleration("mounting_bias")?.unwrap_or(0.0),
-        mounting_scale: ratio("mounting_scale")?.unwrap_or(0.0),
-        resolution: acceleration("resolution")?.unwrap_or(0.0),
-        reading_noise: acceleration("reading_noise")?.unwrap_or(0.0),
-        doubt: ratio("doubt")?.unwrap_or(0.0),
+        rest_angle: rest_angle.unwrap_or(0.0),
+        proof_masses: proof_masses.unwrap_or(0.0),
+        attitude: attitude.unwrap_or(0.0),
+        bias_change: bias_change.unwrap_or(ANY_BIAS),
+        mounting_bias: mounting_bias.unwrap_or(0.0),
+        mounting_scale: mounting_scale.unwrap_or(0.0),
+        resolution: resolution.unwrap_or(0.0),
+        reading_noise: reading_noise.unwrap_or(0.0),
+        doubt: doubt.unwrap_or(0.0),
         effects: effects(&at, table, experiment, error_model)?,
     })
 }
@@ -98,10 +101,10 @@ fn effects(
 ) -> Result<[f64; Rival::COUNT], Error> {
     let names: Vec<String> = Rival::COMMON.iter().map(|rival| rival.name().replace('-', "_")).collect();
     let mut bounds = [0.0; Rival::COUNT];
-    for (key, quantity) in table.iter().filter(|(key, _)| !QUANTITIES.contains(&key.as_str())) {
+    for (key, quantity) in table.iter().filter(|(key, _)| !is_quantity(key)) {
         let Some(place) = names.iter().position(|name| name == key) else {
-            let effects = names.iter().map(String::as_str).filter(|name| !QUANTITIES.contains(name));
-            let known: Vec<&str> = QUANTITIES.into_iter().chain(effects).collect();
+            let effects = names.iter().map(String::as_str).filter(|name| !is_quantity(name));
+            let known: Vec<&str> = QUANTITIES.iter().map(|(name, ..)| *name).chain(effects).collect();
             let found = format!("the unknown quantity {}", quoted(key.as_bytes()));
             return Err(at.unexpected(key, found, format!("one of {}", known.join(", "))));
         };

@@ -5,7 +5,7 @@ use centrical::{Calibration, Data, Fit, FitError, MeasurementModel, Observation,
 use nalgebra::{DMatrix, Vector3};
 
 use super::calibrate::{Problem, as_result};
-use crate::document::{Assessed, AssessmentReport, ResultObjection};
+use crate::document::Assessment;
 use crate::error::Error;
 use crate::experiment::Session;
 
@@ -21,32 +21,6 @@ pub struct AssessmentRequest {
     pub scale_by_residuals: bool,
     /// Range of the specific force of the prediction [m/s^2]; `None` for the highest of the session.
     pub range: Option<f64>,
-}
-
-/// How far a calibration can be trusted.
-#[derive(Debug)]
-pub struct Assessment {
-    /// Title of the session.
-    pub title: String,
-    /// Whether the noise and the speed of the plateaus are scaled by the residuals.
-    pub scaled_by_residuals: bool,
-    /// The model.
-    pub model: MeasurementModel,
-    /// The fit of all plateaus.
-    pub fit: Fit,
-    /// If it was asked for, the fit without outlying plateaus, on which what follows rests then; and these, by set point, each
-    /// with its probability at the time.
-    pub cleaned: Option<(Fit, Vec<(usize, f64)>)>,
-    /// What each source of uncertainty leaves.
-    pub budget: Budget,
-    /// Whether the residuals are those of a true model.
-    pub validity: Validity,
-    /// Patterns in the residuals.
-    pub patterns: Vec<Pattern>,
-    /// Uncertainty of a compensated reading along each instrument axis; `None` while a coefficient is not determined.
-    pub prediction: Option<[Vec<CurvePoint>; 3]>,
-    /// The objections to the calibration that the above rests on, as [`calibrate`](super::calibrate()) has them.
-    pub objections: Vec<ResultObjection>,
 }
 
 /// Reads, reduces, fits and assesses a session. `progress` is called with the number of bytes read, from any thread; most
@@ -83,23 +57,6 @@ pub fn assess(session: &Session, request: &AssessmentRequest, progress: OnProgre
         prediction,
         objections,
     })
-}
-
-impl Assessment {
-    /// The assessment as a document, expanded uncertainties for a probability of `coverage`.
-    pub fn report(&self, coverage: f64) -> AssessmentReport {
-        let assessed = Assessed {
-            model: &self.model,
-            fit: &self.fit,
-            cleaned: self.cleaned.as_ref().map(|(fit, left_out)| (fit, left_out.as_slice())),
-            budget: &self.budget,
-            validity: &self.validity,
-            patterns: &self.patterns,
-            prediction: self.prediction.as_ref(),
-            objections: &self.objections,
-        };
-        AssessmentReport::of(&assessed, &self.title, coverage, self.scaled_by_residuals)
-    }
 }
 
 /// The budget of the fit that is assessed, whether its residuals are those of a true model, and their patterns.

@@ -7,9 +7,10 @@ use centrical::uncertainty::{Comparison, Difference, Estimates};
 use nalgebra::{DMatrix, DVector};
 
 use super::history::{Calibrated, CalibratedParameter, Kinds, refuse_other_output, shared_changes};
-use crate::document::{CalibrationResult, ComparisonReport, DifferenceSummary, PairComparison, TermSummary};
+use crate::document::{CalibrationResult, ComparisonReport, DifferenceSummary, PairComparison};
 use crate::error::{Error, Place};
 use crate::quantity::Date;
+use crate::store::TermSummary;
 
 /// How results are compared.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

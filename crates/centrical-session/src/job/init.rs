@@ -25,7 +25,7 @@ use std::path::{Path, PathBuf};
 use centrical::OnProgress;
 
 pub use self::column_names::time_column;
-pub use self::draft::{Draft, FillIn};
+pub use self::draft::Draft;
 pub use self::request::InitRequest;
 use self::tumbled::Tumbled;
 use crate::error::{Error, Place};

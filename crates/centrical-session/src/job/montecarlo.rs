@@ -8,7 +8,7 @@ use centrical::{Calibration, Data, FitError, MeasurementModel, Observation, OnPr
 use nalgebra::Vector3;
 
 use super::calibrate::Problem;
-use crate::document::{MonteCarloReport, Repeated, RepeatedFit};
+use crate::document::MonteCarloReport;
 use crate::error::{Error, Place};
 use crate::experiment::{Plan, Session};
 
@@ -33,6 +33,11 @@ impl MonteCarloRequest {
     pub fn runs(runs: usize) -> Result<usize, String> {
         let is_number = (2..=10_000_000).contains(&runs);
         is_number.then_some(runs).ok_or_else(|| format!("found {runs}, expected 2 to 10,000,000 calibrations"))
+    }
+
+    fn settings(&self) -> Settings {
+        let method = if self.linear { Method::Linear } else { Method::Exact };
+        Settings { runs: self.runs, seed: self.seed, coverage: self.coverage, method }
     }
 }
 
@@ -98,27 +103,14 @@ impl MonteCarloCase {
     /// # Errors
     /// [`Error::Fit`] when a weight is invalid; [`Error::Stopped`].
     pub fn run(&self, request: &MonteCarloRequest, progress: OnProgress<usize>) -> Result<MonteCarlo, Error> {
-        let settings = Settings {
-            runs: request.runs,
-            seed: request.seed,
-            coverage: request.coverage,
-            method: if request.linear { Method::Linear } else { Method::Exact },
-        };
         Data::new(&self.model, self.observations.clone())
-            .and_then(|data| MonteCarlo::of(&data, &self.truth, &settings, progress))
+            .and_then(|data| MonteCarlo::of(&data, &self.truth, &request.settings(), progress))
             .map_err(|source| Error::fit(&self.file, source))
     }
 
     /// What the runs of `request` show, as a document.
     pub fn report(&self, request: &MonteCarloRequest, monte_carlo: &MonteCarlo) -> MonteCarloReport {
-        let repeated = Repeated {
-            parameters: self.model.parameters(),
-            truth: &self.truth,
-            seed: request.seed,
-            fit: if request.linear { RepeatedFit::Linear } else { RepeatedFit::Exact },
-            coverage: request.coverage,
-        };
-        MonteCarloReport::of(&repeated, monte_carlo)
+        MonteCarloReport::of(self.model.parameters(), &self.truth, &request.settings(), monte_carlo)
     }
 }
 

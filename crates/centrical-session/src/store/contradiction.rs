@@ -6,7 +6,7 @@ use centrical::{ErrorModel, Group, Term};
 use centrical_compensate::Monomial;
 use centrical_table::LARGEST_NUMBER;
 
-use super::row::{Row, RowTerm, Status};
+use super::row::{Row, Status, TermSummary};
 use super::schema::Depth;
 
 /// Column, what was found there, and what was expected.
@@ -97,7 +97,7 @@ fn of_units(row: &Row) -> Option<Contradiction> {
 fn of_terms(row: &Row) -> Option<Contradiction> {
     let mut names = HashSet::new();
     row.terms.iter().find_map(|term| {
-        let RowTerm { name, axis, powers, sign_of } = term;
+        let TermSummary { name, axis, powers, sign_of } = term;
         if !(1..=3).contains(axis) || sign_of.is_some_and(|axis| axis > 3) {
             return Some(("term_axes", format!("newtonometer {axis} of {name}"), "1 to 3".to_owned()));
         }

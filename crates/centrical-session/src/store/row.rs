@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use centrical::Group;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
 use crate::quantity::Date;
@@ -35,15 +35,16 @@ pub struct Failure {
 }
 
 /// A term of the error model.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct RowTerm {
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct TermSummary {
     /// Name of its coefficient, one of the parameters.
     pub name: String,
     /// Newtonometer it acts on: 1, 2 or 3.
     pub axis: usize,
     /// Powers of f1, f2, f3.
     pub powers: [u8; 3],
-    /// Newtonometer whose sign the monomial takes: 1, 2 or 3.
+    /// Newtonometer whose sign the monomial takes, for odd terms such as `|f1| f1`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sign_of: Option<usize>,
 }
 
@@ -133,7 +134,7 @@ pub struct Row {
     /// See `output_scale`.
     pub output_bias: Vec<f64>,
     /// The error model.
-    pub terms: Vec<RowTerm>,
+    pub terms: Vec<TermSummary>,
     /// Whether the result says which influences are shared: not one of an older program.
     pub shared_known: bool,
     /// What they leave.

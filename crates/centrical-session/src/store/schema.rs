@@ -3,7 +3,7 @@
 use centrical::Group;
 use centrical_table::{Cell, Kind, TypedColumn};
 
-use super::row::{Row, RowPrior, RowTerm, SharedInfluence, Status};
+use super::row::{Row, RowPrior, SharedInfluence, Status, TermSummary};
 use crate::error::quoted;
 
 /// Name of the schema's present version.
@@ -190,13 +190,14 @@ fn text(text: &str) -> Cell {
     if text.is_empty() { Cell::Null } else { Cell::Text(text.to_owned()) }
 }
 
-fn whole(number: usize) -> i64 {
+/// A number that is counted.
+pub(crate) fn whole(number: usize) -> i64 {
     i64::try_from(number).unwrap_or(i64::MAX)
 }
 
 /// A term by its name; what else it has is read later.
-fn term(name: String) -> RowTerm {
-    RowTerm { name, axis: 0, powers: [0; 3], sign_of: None }
+fn term(name: String) -> TermSummary {
+    TermSummary { name, axis: 0, powers: [0; 3], sign_of: None }
 }
 
 fn set_axes(row: &mut Row, axes: &[i64]) {

@@ -4,7 +4,7 @@ use std::fs;
 
 use centrical::{Group, unwatched};
 use centrical_session::{
-    CalibrationResult, Depth, Method, Row, RowPrior, RowTerm, Selection, Session, Store, UnitHistoryReport,
+    CalibrationResult, Depth, Method, Row, RowPrior, Selection, Session, Store, TermSummary, UnitHistoryReport,
     UnitHistoryRequest, calibrate, read_calibrations, unit_history,
 };
 use nalgebra::{DMatrix, DVector};
@@ -41,9 +41,9 @@ fn measured(truth: &DVector<f64>, determines_second: bool, random: &mut Random) 
     Measured { information, estimate }
 }
 
-fn term((name, axis, component): (&str, usize, usize)) -> RowTerm {
+fn term((name, axis, component): (&str, usize, usize)) -> TermSummary {
     let powers = [1, 2, 3].map(|j| u8::from(j == component));
-    RowTerm { name: name.to_owned(), axis, powers, sign_of: None }
+    TermSummary { name: name.to_owned(), axis, powers, sign_of: None }
 }
 
 fn row(n: usize, values: &DVector<f64>, covariance: &DMatrix<f64>) -> Row {

@@ -7,7 +7,7 @@ use std::thread;
 use std::time::Instant;
 
 use centrical::Group;
-use centrical_session::{Depth, Row, RowPrior, RowTerm, Selection, SharedInfluence, Store, unwatched};
+use centrical_session::{Depth, Row, RowPrior, Selection, SharedInfluence, Store, TermSummary, unwatched};
 use centrical_table::{Cell, Kind, TypedColumn, TypedWriter};
 use tempfile::TempDir;
 
@@ -37,7 +37,7 @@ fn row(n: usize, p: usize) -> Row {
         values: (0..p).map(number).collect(),
         standard_uncertainties: (0..p).map(uncertainty).collect(),
         covariance: (0..p).flat_map(|i| (0..=i).map(move |j| covariance(i, j))).collect(),
-        terms: vec![RowTerm { name: TERM.to_owned(), axis: 2, powers: [1, 0, 2], sign_of: Some(3) }],
+        terms: vec![TermSummary { name: TERM.to_owned(), axis: 2, powers: [1, 0, 2], sign_of: Some(3) }],
         shared_known: true,
         priors_known: n.is_multiple_of(2),
         priors: (0..n % 3).map(|k| prior(k, (0..p).map(number).collect())).collect(),

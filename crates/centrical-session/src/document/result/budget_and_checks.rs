@@ -1,11 +1,12 @@
 //! How far a result can be trusted: the uncertainties by their sources, and the checks of the fit.
 
-use centrical::uncertainty::{Budget, Degrees, Level, Pattern, Prediction, Rivals, Trend, Validity};
+use centrical::uncertainty::{Budget, Level, Pattern, Prediction, Rivals, Trend, Validity};
 use centrical::{Calibration, Experiment, FitError};
 use centrical::{Prior, Source};
 use serde::{Deserialize, Serialize};
 
 use super::rivals::RivalSummary;
+use crate::document::json::finite_degrees;
 
 /// The uncertainties by their sources.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -168,14 +169,10 @@ impl BudgetSummary {
                 rows.into_iter().map(influence).collect()
             }),
         };
-        let finite = |degrees| match degrees {
-            Degrees::Finite(nu) => Some(nu),
-            Degrees::Infinite => None,
-        };
         Self {
             sources: budget.contributions().iter().map(source).collect(),
             combined: (0..count).map(known).collect(),
-            degrees_of_freedom: (0..count).map(|j| budget.degrees_of_freedom(j).and_then(finite)).collect(),
+            degrees_of_freedom: (0..count).map(|j| budget.degrees_of_freedom(j).and_then(finite_degrees)).collect(),
         }
     }
 }

@@ -2,8 +2,9 @@
 
 use centrical_compensate::{Compensation, Monomial, NotInvertible, Term};
 
-use super::schema::{CalibrationResult, TermSummary};
+use super::schema::CalibrationResult;
 use crate::error::NoErrorModel;
+use crate::store::TermSummary;
 
 impl CalibrationResult {
     /// The terms of the error model with their estimated coefficients, in the order of the model.

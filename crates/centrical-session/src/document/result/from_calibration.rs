@@ -13,14 +13,15 @@ use super::rivals::RestsOn;
 use super::schema::{
     CalibrationResult, ConvergenceSummary, FitSummary, Method, ModelSummary, MountingSummary, ObservabilitySummary,
     OutputSummary, ParameterEstimate, PlateauSummary, PositionSummary, PriorSummary, Program, SCHEMA, SessionSummary,
-    TermSummary,
 };
 use super::speeds::SpeedsSummary;
 use super::verdict::is_vague;
+use crate::document::json::rows;
 use crate::document::steadiness::{DriftSummary, TiltSummary};
 use crate::experiment::{OutputUnit, Session};
 use crate::record::{Columns, Scale};
 use crate::reduced::{Reduced, ReducedPlateau, Steadiness};
+use crate::store::TermSummary;
 
 impl CalibrationResult {
     /// Puts a calibration and the reduced session that it rests on into the form of the file: with its budget and, for a fit
@@ -58,7 +59,7 @@ impl CalibrationResult {
         advance(progress, 0)?;
         Ok(Self {
             schema: SCHEMA.to_owned(),
-            program: Program { name: "centrical".to_owned(), version: env!("CARGO_PKG_VERSION").to_owned() },
+            program: Program::this(),
             inputs: reduced.inputs.clone(),
             session: SessionSummary::new(session),
             model: ModelSummary::new(model),
@@ -330,8 +331,4 @@ fn plateaus(calibration: &Calibration, session: &Session, reduced: &Reduced) -> 
 fn against(calibration: &Calibration, set_point: &SetPoint, plateau: &ReducedPlateau) -> (Matrix3<f64>, Vector3<f64>) {
     let (covariance, reading) = calibration.expected(set_point, &plateau.covariance);
     (covariance, plateau.mean - reading)
-}
-
-fn rows(matrix: &Matrix3<f64>) -> [[f64; 3]; 3] {
-    [0, 1, 2].map(|i| [0, 1, 2].map(|j| matrix[(i, j)]))
 }

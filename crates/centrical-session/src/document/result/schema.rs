@@ -16,6 +16,7 @@ use super::speeds::SpeedsSummary;
 use crate::document::steadiness::{DriftSummary, LeftOutSummary, TiltSummary};
 use crate::experiment::Turning;
 use crate::record::{Input, RecordOverview};
+use crate::store::TermSummary;
 
 /// Name of the schema's present version.
 pub const SCHEMA: &str = "centrical-result/1";
@@ -178,20 +179,6 @@ pub struct PositionSummary {
     /// rests in one attitude share it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub attitude_uncertainty: Option<f64>,
-}
-
-/// A term of the error model.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct TermSummary {
-    /// Name of its coefficient.
-    pub name: String,
-    /// Newtonometer it acts on: 1, 2 or 3.
-    pub axis: usize,
-    /// Powers of f1, f2, f3.
-    pub powers: [u8; 3],
-    /// Newtonometer whose sign the monomial takes, for odd terms such as `|f1| f1`.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub sign_of: Option<usize>,
 }
 
 /// An estimate.

@@ -9,7 +9,7 @@ use nalgebra::{Matrix3, Vector3};
 use serde::{Deserialize, Serialize};
 
 use super::history::{HistoryEntry, HistoryEstimate};
-use crate::document::json;
+use crate::document::json::{self, rows};
 use crate::error::{Error, Place};
 use crate::experiment::Session;
 use crate::record::Input;
@@ -176,11 +176,10 @@ impl WatchedPlateau {
     /// A plateau that has come.
     pub fn new(observation: &Observation, innovation: Innovation, alarm: bool, held_out: bool) -> Self {
         let Innovation { squared, degrees_of_freedom } = innovation;
-        let row = |i: usize| [0, 1, 2].map(|j| observation.covariance[(i, j)]);
         Self {
             set_point: observation.set_point,
             mean: observation.mean.into(),
-            covariance: [row(0), row(1), row(2)],
+            covariance: rows(&observation.covariance),
             innovation: WatchedInnovation { squared, degrees_of_freedom },
             alarm,
             held_out,

@@ -14,11 +14,10 @@ use nalgebra::{DMatrix, DVector};
 use self::errors::OwnErrors;
 use self::kinds::Role;
 pub use self::kinds::{CalibratedParameter, Kinds, Places};
-pub use self::output::Output;
 use self::output::{Restated, in_changes, in_covariance, in_values};
 use self::shared_errors::SharedErrors;
 use super::of_data::OfData;
-use crate::document::{PastSession, TermSummary};
+use crate::document::{OutputSummary, PastSession};
 use crate::quantity::Date;
 use crate::store::{Row, SharedInfluence};
 
@@ -42,7 +41,7 @@ pub struct Calibrated {
     /// Whether no check raised an objection.
     pub acceptable: bool,
     /// The raw output that its coefficients are relative to, if it is raw.
-    pub output: Option<Output>,
+    pub output: Option<OutputSummary>,
     /// Its parameters; calibrations of one kind share them.
     pub parameters: Arc<Vec<CalibratedParameter>>,
     /// Estimates, SI; NaN where the data do not determine a parameter.
@@ -100,13 +99,11 @@ impl Calibrated {
     pub fn on(date: Date, source: String, row: Row, kinds: &mut Kinds) -> Self {
         let terms = row.terms.iter().map(|term| {
             let place = row.index(&term.name)?;
-            let summary =
-                TermSummary { name: term.name.clone(), axis: term.axis, powers: term.powers, sign_of: term.sign_of };
-            summary.with_coefficient(*row.values.get(place)?).ok()
+            term.with_coefficient(*row.values.get(place)?).ok()
         });
         let of_data = OfData::of(&row);
         Self {
-            output: Output::of(&row),
+            output: OutputSummary::of_row(&row),
             errors: None,
             of_data,
             source,
@@ -130,7 +127,7 @@ impl Calibrated {
 
     /// The same with coefficients relative to another `output` of the same unit. Where the error model lacks a bias or a scale that other
     /// nominal values ask for, the coefficients of the axis are not determined.
-    pub fn restate(&mut self, output: &Output) {
+    pub fn restate(&mut self, output: &OutputSummary) {
         let Some(own) = self.output.as_ref().filter(|own| *own != output && own.unit == output.unit) else { return };
         let has = |axis: usize, role: Role| self.parameters.iter().any(|p| p.coefficient == Some((axis, role)));
         let is_possible = [0, 1, 2].map(|axis| {

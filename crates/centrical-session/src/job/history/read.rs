@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 
 use centrical::{OnProgress, advance};
 
-use super::calibrated::{Calibrated, Kinds, Output};
+use super::calibrated::{Calibrated, Kinds};
 use super::results::collect_results;
-use crate::document::{CalibrationResult, unit_name};
+use crate::document::{CalibrationResult, OutputSummary, unit_name};
 use crate::error::{Error, Place, quoted};
 use crate::quantity::Date;
 use crate::settings::read_result;
@@ -69,7 +69,7 @@ pub fn refuse_other_output(first: &Calibrated, calibrated: &Calibrated) -> Resul
 /// States all calibrations relative to the nominal output of the last one in the same raw unit.
 fn restate(calibrations: &mut [Calibrated]) {
     let outputs = calibrations.iter().filter_map(|calibrated| calibrated.output.clone());
-    let last: BTreeMap<String, Output> = outputs.map(|output| (output.unit.clone(), output)).collect();
+    let last: BTreeMap<String, OutputSummary> = outputs.map(|output| (output.unit.clone(), output)).collect();
     for calibrated in calibrations {
         if let Some(last) = calibrated.output.as_ref().and_then(|output| last.get(&output.unit)) {
             calibrated.restate(last);

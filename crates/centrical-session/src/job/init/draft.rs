@@ -13,22 +13,11 @@ pub struct Draft {
     /// The text.
     pub text: String,
     /// The lines to be filled in, in their order.
-    pub fill_in: Vec<FillIn>,
+    pub fill_in: Vec<LineToFillIn>,
     /// Number of guesses.
     pub guesses: usize,
     /// Files that are not used, and why.
     pub unused: Vec<String>,
-}
-
-/// A line that only a person can complete.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct FillIn {
-    /// The line, counted from 1.
-    pub line: usize,
-    /// What is asked for: table and key.
-    pub key: String,
-    /// Why the files do not show it, or how to find it.
-    pub reason: String,
 }
 
 /// Stands where a person has to write: the program refuses it by name, so that nothing is forgotten.
@@ -37,12 +26,7 @@ pub(super) const UNKNOWN: &str = "\"?\"";
 impl Draft {
     /// The draft as a document, written to `file` if to any.
     pub fn report(&self, file: Option<&Path>) -> DraftReport {
-        let line = |FillIn { line, key, reason }: &FillIn| LineToFillIn {
-            line: *line,
-            key: key.clone(),
-            reason: reason.clone(),
-        };
-        DraftReport::new(file, &self.text, self.guesses, self.fill_in.iter().map(line).collect())
+        DraftReport::new(file, &self.text, self.guesses, self.fill_in.clone())
     }
 
     pub(super) fn line(&mut self, line: &str) {
@@ -80,6 +64,6 @@ impl Draft {
     pub(super) fn fill_in(&mut self, key: &str, line: &str, reason: &str) {
         let _ = writeln!(self.text, "{line}  # FILL IN: {reason}");
         let line = self.text.lines().count();
-        self.fill_in.push(FillIn { line, key: key.to_owned(), reason: reason.to_owned() });
+        self.fill_in.push(LineToFillIn { line, key: key.to_owned(), reason: reason.to_owned() });
     }
 }

@@ -34,7 +34,7 @@ pub(super) fn report(
     let prediction = task.predict(schedule).map_err(|source| failed(PlanError::from(source)))?;
     Ok(PlanReport {
         schema: PLAN_SCHEMA,
-        program: Program { name: "centrical".to_owned(), version: env!("CARGO_PKG_VERSION").to_owned() },
+        program: Program::this(),
         title: planning.title.clone(),
         criterion: match task.criterion {
             Criterion::Determinant => CriterionName::D,

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use centrical::Group;
 
-use crate::store::{Row, RowTerm};
+use crate::store::{Row, TermSummary};
 
 /// A parameter.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
@@ -34,7 +34,7 @@ pub enum Role {
 }
 
 /// Newtonometer and role of a term.
-fn coefficient(term: &RowTerm) -> Option<(usize, Role)> {
+fn coefficient(term: &TermSummary) -> Option<(usize, Role)> {
     let axis = term.axis.checked_sub(1).filter(|axis| *axis < 3)?;
     let own = [0, 1, 2].map(|of| u8::from(of == axis));
     let role = match (term.powers, term.sign_of) {

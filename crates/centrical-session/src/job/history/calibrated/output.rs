@@ -5,18 +5,8 @@
 //! `g c + h`, and the scale error `g c + g - 1`.
 
 use super::kinds::Role;
+use crate::document::OutputSummary;
 use crate::store::Row;
-
-/// Nominal raw output of a unit.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Output {
-    /// Unit of the raw output.
-    pub unit: String,
-    /// Nominal scale of each newtonometer [raw unit per m/s^2].
-    scale: [f64; 3],
-    /// Raw output of each at no specific force.
-    bias: [f64; 3],
-}
 
 /// What other nominal values make of a coefficient `c`: `gain c + shift`.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -25,9 +15,9 @@ pub struct Restated {
     pub shift: f64,
 }
 
-impl Output {
-    /// Of a row; `None` if its readings are in m/s^2, or of an older program.
-    pub fn of(row: &Row) -> Option<Self> {
+impl OutputSummary {
+    /// The nominal raw output of a row; `None` if its readings are in m/s^2, or of an older program.
+    pub fn of_row(row: &Row) -> Option<Self> {
         let three = |list: &[f64]| <[f64; 3]>::try_from(list).ok();
         let is_raw = !row.output_unit.is_empty();
         let (scale, bias) = (three(&row.output_scale)?, three(&row.output_bias)?);
