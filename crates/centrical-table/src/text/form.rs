@@ -4,7 +4,7 @@ use super::encoding::TextEncoding;
 use super::fields::{Delimiter, number};
 use super::lines::{Line, is_data, numbered};
 use super::shape::Shape;
-use super::unit_words::{name_and_unit, unit};
+use super::unit_words::{name_and_unit, unit_of_word};
 use crate::stamp::{self, StampKind};
 
 /// What a table as text looks like, from its first lines.
@@ -69,7 +69,7 @@ impl TextForm {
         };
         let names = shape.header.map(fields).unwrap_or_default();
         let units = match shape.units.map(fields) {
-            Some(row) => row.iter().map(|text| unit(text)).collect(),
+            Some(row) => row.iter().map(|text| unit_of_word(text)).collect(),
             None => names.iter().map(|name| name_and_unit(name).map(|(_, unit)| unit)).collect(),
         };
         let first_row = fields(shape.first_row);

@@ -33,15 +33,10 @@ const WORDS: [(&str, &[&str]); 27] = [
     ("m^2/s^4", &["m^2/s^4", "m2/s4", "m²/s⁴", "м^2/с^4", "м²/с⁴"]),
 ];
 
-/// The unit that a text of a file names, with or without brackets, in the spelling of settings.
-pub(super) fn unit(text: &str) -> Option<&'static str> {
+/// The unit that a word of a file names, `1/min`, `[м/с²]`, with or without brackets, in the spelling of settings.
+pub fn unit_of_word(text: &str) -> Option<&'static str> {
     let text = without_brackets(text.trim()).to_lowercase().replace('μ', "µ");
     WORDS.iter().find(|(_, spellings)| spellings.contains(&text.as_str())).map(|(unit, _)| *unit)
-}
-
-/// The unit that a word of a file names, `1/min` or `м/с²`, in the spelling of settings.
-pub fn unit_of_word(word: &str) -> Option<&'static str> {
-    unit(word)
 }
 
 /// A name with the unit behind it, `f1 [g]`, `t (s)` or `f1, g`: the unit, in the spelling of settings.
@@ -52,7 +47,7 @@ pub fn unit_beside_name(text: &str) -> Option<&'static str> {
 /// The unit that bytes of a file name in any encoding: a row of units is too short to show which it is.
 pub(super) fn unit_in_any(text: &[u8]) -> Option<&'static str> {
     let encodings = [TextEncoding::Utf8].into_iter().chain(TextEncoding::OF_BYTES);
-    encodings.into_iter().find_map(|encoding| unit(&encoding.decode(text)))
+    encodings.into_iter().find_map(|encoding| unit_of_word(&encoding.decode(text)))
 }
 
 /// A name with the unit behind it, `f1 [g]`, `t (s)` or `f1, g`: the name and the unit.
@@ -64,7 +59,7 @@ pub(super) fn name_and_unit(text: &str) -> Option<(&str, &'static str)> {
         _ => text.rfind(',')?,
     };
     let (name, rest) = text.split_at(begin);
-    Some((name.trim_end(), unit(rest.strip_prefix(',').unwrap_or(rest))?))
+    Some((name.trim_end(), unit_of_word(rest.strip_prefix(',').unwrap_or(rest))?))
 }
 
 fn without_brackets(text: &str) -> &str {
@@ -91,7 +86,7 @@ mod tests {
             ("text", None),
         ];
         for (text, expected) in cases {
-            assert_eq!(unit(text), expected, "{text}");
+            assert_eq!(unit_of_word(text), expected, "{text}");
             for encoding in [encoding_rs::WINDOWS_1251, encoding_rs::WINDOWS_1252] {
                 let (bytes, _, is_lossy) = encoding.encode(text);
                 assert!(is_lossy || unit_in_any(&bytes) == expected, "{text}");
