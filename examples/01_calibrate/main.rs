@@ -12,7 +12,7 @@ use centrical_session::{Method, Session, calibrate, unwatched};
 /// If a file is wrong; the message names the file, the place, what was found and what was expected.
 pub fn main() -> Result<(), Box<dyn Error>> {
     let session = Session::read(Path::new("examples/ta-200"))?;
-    let result = calibrate(&session, Method::Exact, &unwatched)?;
+    let result = calibrate(&session, &[], Method::Exact, &unwatched)?;
 
     println!("{}: chi^2 {:.1}, {} degrees", session.title, result.fit.chi_squared, result.fit.degrees_of_freedom);
     for parameter in result.parameters.iter().filter(|parameter| parameter.group == Group::Bias) {

@@ -14,7 +14,7 @@ pub fn main() -> Result<(), Box<dyn Error>> {
     let folder = std::env::temp_dir().join("centrical-05");
     create_folder(&folder)?;
     let session = Session::read(Path::new("examples/ta-200"))?;
-    calibrate(&session, Method::Exact, &unwatched)?.write(&folder.join("result.json"))?;
+    calibrate(&session, &[], Method::Exact, &unwatched)?.write(&folder.join("result.json"))?;
 
     let documents = write_documents(&DocumentRequest {
         result: folder.join("result.json"),

@@ -50,6 +50,7 @@ pub(crate) use self::json::line as json_line;
 pub use self::models::{CandidateSummary, ModelsReport, NestedTestSummary, TermSupport};
 pub use self::montecarlo::{MonteCarloReport, RepeatedFit, RepeatedParameter, SquareSummary};
 pub use self::noise::{NoiseAnalysis, ReadingNoise};
+pub(crate) use self::observability::largest_force;
 pub use self::observability::{
     CombinationReport, ConditionReport, GroupReport, LostCombination, ObservabilityReport, ObservedParameter,
     PairReport, RemedyReport, SightReport, StepReport, Subject,

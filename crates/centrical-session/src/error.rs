@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 pub use centrical_table::Place;
 pub(crate) use centrical_table::{quoted, shown_path};
 
+use centrical::plan::PlanError;
 use centrical::reduction::ReductionError;
 use centrical::stability::NoiseError;
 use centrical::{FitError, Stopped};
@@ -70,7 +71,7 @@ pub enum Error {
         /// The plan file.
         file: PathBuf,
         /// Why.
-        source: centrical::plan::PlanError,
+        source: PlanError,
     },
     /// A column of readings cannot be analysed for noise.
     #[error("{}, {reading}: {source}", shown_path(file))]
@@ -261,6 +262,14 @@ impl Error {
         match source {
             FitError::Stopped(stopped) => stopped.into(),
             source => Self::Fit { file: file.to_owned(), source },
+        }
+    }
+
+    /// There is no plan of `file`, or the caller stopped the search.
+    pub(crate) fn planning(file: &Path, source: PlanError) -> Self {
+        match source {
+            PlanError::Stopped(stopped) => stopped.into(),
+            source => Self::Planning { file: file.to_owned(), source },
         }
     }
 

@@ -24,7 +24,7 @@ mod watch;
 
 pub use self::assess::{AssessmentRequest, assess};
 pub use self::axes::Axes;
-pub use self::calibrate::{calibrate, calibrate_reduced, calibrate_without};
+pub use self::calibrate::{calibrate, calibrate_reduced};
 pub use self::compare::{ComparisonRequest, compare_results};
 pub use self::compensate::{Compensated, CompensationRequest, compensate, compensate_record};
 pub use self::history::{

@@ -9,7 +9,7 @@
 //! use centrical_session::{Method, Session, calibrate, unwatched};
 //!
 //! let session = Session::read(Path::new("../../examples/ta-200"))?;
-//! let result = calibrate(&session, Method::Exact, &unwatched)?;
+//! let result = calibrate(&session, &[], Method::Exact, &unwatched)?;
 //! let bias = result.parameter("df_1").expect("the error model has a bias");
 //! assert!(bias.estimable && bias.standard_uncertainty.is_some_and(|u| u < 1e-3));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
@@ -80,7 +80,7 @@ pub use job::{
     InitRequest, LiveRequest, MonteCarloCase, MonteCarloRequest, NoiseRequest, PlanRequest, Recorded,
     SeriesRequest, SettingsForm, Tumble, TumbleRequest, USUAL_LEVELS, USUAL_TIMES, Watch, WatchEnd, WatchEvent,
     WatchProgress, WatchRequest, add_result, add_results, assess, calibrate, calibrate_reduced, calibrate_series,
-    calibrate_without, check_store, collect_results, compare_results, compensate, compensate_record, init, list_store,
+    check_store, collect_results, compare_results, compensate, compensate_record, init, list_store,
     matching_paths, noise_of, noise_of_plateau, plan, read_plan, read_planning, reduce, reduce_recorded,
     reduce_without_inputs, refuse_date, select_model, settings_schema, simulate_session, spelling, subject, subject_of,
     time_column, tumble, watch, write_reduced,

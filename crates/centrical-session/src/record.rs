@@ -17,6 +17,7 @@ pub(crate) use self::columns::named_columns;
 pub use self::columns::{Column, Columns, MissingReadings, Scale};
 pub(crate) use self::equal_columns::EqualColumns;
 pub use self::input::Input;
+pub(crate) use self::input::hexadecimal;
 pub use self::overview::RecordOverview;
 pub(crate) use self::passes::RecordFile;
 pub use self::reader::{RecordReader, read_record, read_telemetry, stretch};

@@ -15,6 +15,7 @@ mod writing;
 
 pub use self::folder::Store;
 pub use self::reading::{Rows, Selection};
+pub(crate) use self::row::packed;
 pub use self::row::{Failure, Row, RowPrior, SharedInfluence, Status, TermSummary, days_since_1970, sha256};
 pub use self::schema::Depth;
 pub(crate) use self::schema::whole;

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use centrical_report::states_text;
 use centrical_session::{
-    CalibrationResult, Error, Method, Place, PlateauName, Session, Store, add_result, calibrate_without, claim_folder,
+    CalibrationResult, Error, Method, Place, PlateauName, Session, Store, add_result, calibrate, claim_folder,
     refuse_date,
 };
 
@@ -80,7 +80,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
         file.as_deref().map_or(Ok(()), |file| refuse_another_unit(file, &session))?;
     }
     let bar = progress::reading(&session, arguments.printing);
-    let result = calibrate_without(&session, &arguments.hold_out, method, &progress::on(&bar))?;
+    let result = calibrate(&session, &arguments.hold_out, method, &progress::on(&bar))?;
     bar.finish_and_clear();
     let result = arguments.documents.in_axes(result, &arguments.session)?;
     if let Some(file) = &file {

@@ -107,7 +107,7 @@ fn of_session(arguments: &Arguments, path: &Path) -> Result<Outcome, Error> {
     let out = arguments.out.as_deref();
     let claim = out.map(claim_folder).transpose()?;
     arguments.refuse_outputs(session.files().into_iter())?;
-    let result = calibrate(&session, Method::Exact, &unwatched)?;
+    let result = calibrate(&session, &[], Method::Exact, &unwatched)?;
     let result = arguments.documents.in_axes(result, path)?;
     if let Some(folder) = out {
         result.write(&folder.join(RESULT))?;

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use centrical_report::{read_issuer, write_all_documents};
-use centrical_session::{calibrate_without, claim_folder};
+use centrical_session::claim_folder;
 use pyo3::prelude::*;
 
 use crate::given::{GivenSession, refuse_outputs};
@@ -32,7 +32,7 @@ pub fn calibrate(
         if let Some(folder) = &out {
             refuse_outputs(folder, &[session.files(), laboratory.as_deref().into_iter().collect()].concat())?;
         }
-        let result = calibrate_without(&session, &hold_out, method, &|bytes| work.advance(bytes))?;
+        let result = centrical_session::calibrate(&session, &hold_out, method, &|bytes| work.advance(bytes))?;
         if let Some(folder) = &out {
             result.write(&folder.join("result.json"))?;
         }

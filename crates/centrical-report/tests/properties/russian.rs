@@ -30,7 +30,7 @@ fn extended() -> CalibrationResult {
             fs::copy(file.path(), folder.path().join(part).join(file.file_name())).unwrap();
         }
     }
-    calibrate(&Session::read(folder.path()).unwrap(), Method::Recursive, &unwatched).unwrap()
+    calibrate(&Session::read(folder.path()).unwrap(), &[], Method::Recursive, &unwatched).unwrap()
 }
 
 /// Everything that a document says outside its drawings.

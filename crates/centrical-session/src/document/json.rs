@@ -1,7 +1,9 @@
 //! Documents as JSON text, a line end at the end; characters that are not shown are escaped. And numbers as documents have them.
 
+use std::path::Path;
+
 use centrical::uncertainty::Degrees;
-use centrical_table::escaped;
+use centrical_table::{escaped, write_stream};
 use nalgebra::Matrix3;
 use serde::Serialize;
 
@@ -31,6 +33,12 @@ pub(super) fn document(name: &'static str, value: &impl Serialize) -> Result<Str
 /// A document on one line.
 pub(crate) fn line(name: &'static str, value: &impl Serialize) -> Result<String, Error> {
     ended(name, serde_json::to_string(value))
+}
+
+/// Writes a document on one line, whole or not at all.
+pub(super) fn write_line(name: &'static str, value: &impl Serialize, file: &Path) -> Result<(), Error> {
+    let text = line(name, value)?;
+    Ok(write_stream(file, |output| output.write_all(text.as_bytes()))?)
 }
 
 fn ended(document: &'static str, text: serde_json::Result<String>) -> Result<String, Error> {

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use centrical::observability::{Condition, CorrelatedGroup, Need, Reason, Remedy};
 use centrical::plan::{Prediction, ReadingRange};
-use centrical::{Combination, Group, MeasurementModel, SetPoint, Study, Weight};
+use centrical::{Combination, Experiment, Group, MeasurementModel, Study, Weight};
 use serde::Serialize;
 use serde_json::{Map, Value};
 
@@ -38,11 +38,9 @@ impl Subject {
     /// The budget to be expected of a calibration, and the uncertainty of the compensated reading up to the largest load of
     /// the experiment.
     fn prediction(&self) -> Result<PredictionReport, Error> {
-        let prediction = Prediction::of(&self.model, &self.weights, &self.nominal)
-            .map_err(|source| Error::fit(&self.file, source))?;
-        let experiment = self.model.experiment();
-        let load = |s: &SetPoint| experiment.nominal(s).norm();
-        let force = experiment.set_points.iter().map(load).fold(0.0, f64::max);
+        let prediction =
+            Prediction::of(&self.model, &self.weights, &self.nominal).map_err(|source| Error::fit(&self.file, source))?;
+        let force = largest_force(self.model.experiment());
         PredictionReport::of(&prediction, ReadingRange { force }, PredictionReport::COVERAGE)
             .map_err(|source| Error::fit(&self.file, source))
     }
@@ -54,6 +52,11 @@ impl Subject {
     pub fn study(&self) -> Result<Study, Error> {
         Study::at_zero(self.model.clone(), self.weights.clone()).map_err(|source| Error::fit(&self.file, source))
     }
+}
+
+/// The largest nominal specific force of an experiment [m/s^2].
+pub(crate) fn largest_force(experiment: &Experiment) -> f64 {
+    experiment.set_points.iter().map(|s| experiment.nominal(s).norm()).fold(0.0, f64::max)
 }
 
 impl From<Plan> for Subject {

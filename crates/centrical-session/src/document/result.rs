@@ -2,13 +2,11 @@
 
 mod axes;
 mod axes_summary;
-mod between_rests;
 mod budget_and_checks;
 mod contradiction;
 mod error_terms;
 mod file;
 mod from_calibration;
-mod known_attitudes;
 mod next_attitude;
 mod rivals;
 mod schema;
@@ -17,9 +15,9 @@ mod verdict;
 
 pub(crate) use self::axes::Attitude;
 pub use self::axes_summary::{AxesName, AxesParameter, AxesSummary};
-pub use self::between_rests::BetweenRestsSummary;
 pub use self::budget_and_checks::{
-    BudgetSource, BudgetSummary, Follows, MountingPrediction, OutlyingPlateau, PatternSummary, ValiditySummary,
+    BetweenRestsSummary, BudgetSource, BudgetSummary, Follows, MountingPrediction, OutlyingPlateau, PatternSummary,
+    ValiditySummary,
 };
 pub use self::from_calibration::unit_name;
 pub use self::next_attitude::NextAttitudeSummary;

@@ -7,7 +7,7 @@ use centrical::{Experiment, MeasurementModel, STANDARD_GRAVITY, SetPoint};
 
 use super::folder::Folder;
 use super::form::{self, CandidatesTable, Form, MountingTable, Steps};
-use super::plan::{EarlierResult, ExpectedValues, expected_of, expected_values, noise};
+use super::plan::{ExpectedValues, earlier, expected_of, noise, noise_density, noise_floor};
 use super::prior;
 use super::rests::RestTable;
 use super::schedule::{FASTEST, duration};
@@ -42,15 +42,16 @@ pub struct Planning {
     pub range: ReadingRange,
     /// The rests beside the arm that can be chosen: the last of the candidates, in this order.
     pub rests: Option<RestTable>,
+    /// The earlier result that `[plan]` names.
+    pub earlier: Option<PathBuf>,
 }
 
 impl Planning {
-    /// Reads what is to be planned, for a unit of the values that `earlier` reads in the result that the file names. A `time`
-    /// available [s] takes the place of the one in the file.
+    /// Reads what is to be planned, for a unit without errors. A `time` available [s] takes the place of the one in the file.
     ///
     /// # Errors
     /// If the file cannot be read, does not follow the form or makes no sense, or has no `[candidates]`.
-    pub fn read(path: &Path, time: Option<f64>, earlier: EarlierResult) -> Result<Self, Error> {
+    pub fn read(path: &Path, time: Option<f64>) -> Result<Self, Error> {
         let mut form = from_toml::<Form>(path, &read_text(path)?)?.with_schedules();
         let at = TomlPath::table(path, "candidates");
         form.mounting = mountings(&at, &form)?;
@@ -64,8 +65,7 @@ impl Planning {
         }
         session.rest_tables = rests(path, &at, table)?;
         session.add_rests();
-        let expected = expected_values(path, form.plan.as_ref(), earlier)?;
-        let scenarios = scenarios(path, &form, &session, &expected)?;
+        let scenarios = scenarios(path, &form, &session)?;
         let candidates = Candidates {
             scenarios,
             robustness: robustness(path, &form)?,
@@ -80,14 +80,19 @@ impl Planning {
             task: Task { candidates, criterion, time },
             range,
             rests: session.rest_tables.pop(),
+            earlier: earlier(path, form.plan.as_ref()),
         })
     }
 
-    pub(crate) fn failed(&self, source: PlanError) -> Error {
-        match source {
-            PlanError::Stopped(stopped) => stopped.into(),
-            source => Error::Planning { file: self.file.clone(), source },
+    /// Takes the unknowns to be as expected.
+    pub(crate) fn expect(&mut self, expected: &ExpectedValues) {
+        for scenario in &mut self.task.candidates.scenarios {
+            scenario.nominal = expected_of(&scenario.model, expected);
         }
+    }
+
+    pub(crate) fn failed(&self, source: PlanError) -> Error {
+        Error::planning(&self.file, source)
     }
 }
 
@@ -267,22 +272,21 @@ fn costs(file: &Path, form: &Form) -> Result<Costs, Error> {
 }
 
 /// The expected state of affairs first, then those of `[robust]`, all of the same weight.
-fn scenarios(file: &Path, form: &Form, session: &Session, values: &ExpectedValues) -> Result<Vec<Scenario>, Error> {
+fn scenarios(file: &Path, form: &Form, session: &Session) -> Result<Vec<Scenario>, Error> {
     let plan = form.plan.as_ref();
     let given = |key: fn(&form::PlanTable) -> &Option<Quantity>| plan.and_then(|table| key(table).as_ref());
     let (expected, _) = noise(file, given(|t| &t.noise), given(|t| &t.floor), given(|t| &t.duration))?;
-    let scenario =
-        |model: MeasurementModel, noise| Scenario { nominal: expected_of(&model, values), model, noise, weight: 1.0 };
+    let zeros = |model: &MeasurementModel| vec![0.0; model.parameters().len()];
+    let scenario = |model: MeasurementModel, noise| Scenario { nominal: zeros(&model), model, noise, weight: 1.0 };
     let model = session.model()?;
     let mut scenarios = vec![scenario(model.clone(), expected)];
     let at = TomlPath::table(file, "robust");
     for density in &form.robust.noise {
-        let meaning = "a spectral density above 0 and below 1 m/s^2/sqrt(Hz)";
-        let density = at.bounded("noise", density, Dimension::NoiseDensity, (1e-15, 1.0), meaning)?;
+        let density = noise_density(&at, density)?;
         scenarios.push(scenario(model.clone(), Noise { density, ..expected }));
     }
     for floor in &form.robust.floor {
-        let floor = at.bounded("floor", floor, Dimension::Acceleration, (0.0, 1.0), "a floor from 0 to 1 m/s^2")?;
+        let floor = noise_floor(&at, floor)?;
         scenarios.push(scenario(model.clone(), Noise { floor, ..expected }));
     }
     if !form.robust.extensions.is_empty() {

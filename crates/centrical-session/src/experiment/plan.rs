@@ -36,12 +36,14 @@ pub struct Plan {
     pub title: String,
     /// The experiment, the unit's error model, extensions and priors.
     pub model: MeasurementModel,
-    /// Expected unknowns: those of an earlier result that `[plan]` names, zero where nothing is expected.
+    /// Expected unknowns, zero where nothing is expected: those of the earlier result, once [`Plan::expect`] was told.
     pub nominal: Vec<f64>,
     /// How well the mean of each set point will be known.
     pub weights: Vec<Weight>,
     /// The assumed noise.
     pub noise: Noise,
+    /// The earlier result that `[plan]` names.
+    pub earlier: Option<PathBuf>,
 }
 
 /// The noise unless a file says otherwise: 20 ug/sqrt(Hz) and no floor, an ordinary quartz newtonometer.
@@ -88,13 +90,12 @@ impl Probe {
 }
 
 impl Plan {
-    /// Reads a plan, with what `earlier` reads in the result that it names; `None` if the file is a session with records or
-    /// plateaus of its own, or a folder.
+    /// Reads a plan; `None` if the file is a session with records or plateaus of its own, or a folder.
     ///
     /// # Errors
     /// If the file cannot be read, does not follow the form or makes no sense, as for [`Session::read`]. Unlike a session
     /// a plan may rest all the time.
-    pub fn read(path: &Path, earlier: EarlierResult) -> Result<Option<Self>, Error> {
+    pub fn read(path: &Path) -> Result<Option<Self>, Error> {
         if path.is_dir() {
             return Ok(None);
         }
@@ -107,11 +108,15 @@ impl Plan {
             return Ok(None);
         }
         let form = from_toml::<Form>(path, &text)?.with_schedules();
-        let expected = expected_values(path, form.plan.as_ref(), earlier)?;
-        Self::of_form(path, &form, &expected).map(Some)
+        Self::of_form(path, &form).map(Some)
     }
 
-    fn of_form(file: &Path, form: &Form, expected: &ExpectedValues) -> Result<Self, Error> {
+    /// Takes the unknowns to be as expected.
+    pub(crate) fn expect(&mut self, expected: &ExpectedValues) {
+        self.nominal = expected_of(&self.model, expected);
+    }
+
+    fn of_form(file: &Path, form: &Form) -> Result<Self, Error> {
         let mut session = Session::without_plateaus(file, Folder::of(file), form)?;
         session.experiment.set_points =
             schedule::set_points(file, &form.mounting, session.experiment.centrifuge.rotation)?;
@@ -127,10 +132,11 @@ impl Plan {
         Ok(Self {
             file: file.to_owned(),
             title: session.title.clone(),
-            nominal: expected_of(&model, expected),
+            nominal: vec![0.0; model.parameters().len()],
             model,
             weights: weights(&noise, durations, &session.rest_tables),
             noise,
+            earlier: earlier(file, table),
         })
     }
 
@@ -167,6 +173,7 @@ impl Plan {
             model: prior::with_priors(file, model, &prior::entries(&form.prior))?,
             weights,
             noise,
+            earlier: None,
         })
     }
 }
@@ -174,17 +181,10 @@ impl Plan {
 /// Values expected of unknowns, SI, by the names of the parameters: those of an earlier result.
 pub type ExpectedValues = BTreeMap<String, f64>;
 
-/// Reads the values of an earlier result.
-pub(crate) type EarlierResult<'a> = &'a dyn Fn(&Path) -> Result<ExpectedValues, Error>;
-
-/// The values of the earlier result that `[plan] nominal` names by its path from the folder of the file; none if it names none.
-pub(crate) fn expected_values(
-    file: &Path,
-    table: Option<&PlanTable>,
-    earlier: EarlierResult,
-) -> Result<ExpectedValues, Error> {
+/// The earlier result that `[plan] nominal` names by its path from the folder of the file.
+pub(crate) fn earlier(file: &Path, table: Option<&PlanTable>) -> Option<PathBuf> {
     let folder = file.parent().unwrap_or(Path::new(""));
-    table.and_then(|table| table.nominal.as_ref()).map_or(Ok(ExpectedValues::new()), |name| earlier(&folder.join(name)))
+    table.and_then(|table| table.nominal.as_ref()).map(|name| folder.join(name))
 }
 
 /// The unknowns of `model` as expected, zero where nothing is expected. A rest shares nothing but its number with one of an
@@ -251,15 +251,24 @@ pub(crate) fn noise(
 ) -> Result<(Noise, f64), Error> {
     let at = TomlPath::table(file, "plan");
     let mut noise = USUAL_NOISE;
-    if let Some(density) = density {
-        let meaning = "a spectral density above 0 and below 1 m/s^2/sqrt(Hz)";
-        noise.density = at.bounded("noise", density, Dimension::NoiseDensity, (1e-15, 1.0), meaning)?;
+    if let Some(quantity) = density {
+        noise.density = noise_density(&at, quantity)?;
     }
-    if let Some(floor) = floor {
-        let meaning = "an acceleration from 0 to 10 m/s^2";
-        noise.floor = at.bounded("floor", floor, Dimension::Acceleration, (0.0, 10.0), meaning)?;
+    if let Some(quantity) = floor {
+        noise.floor = noise_floor(&at, quantity)?;
     }
     Ok((noise, schedule::duration(&at, "duration", per_plateau)?.unwrap_or(USUAL_DURATION)))
+}
+
+/// The density of noise under `noise` in a table.
+pub(crate) fn noise_density(at: &TomlPath, density: &Quantity) -> Result<f64, Error> {
+    let meaning = "a spectral density above 0 and below 1 m/s^2/sqrt(Hz)";
+    at.bounded("noise", density, Dimension::NoiseDensity, (1e-15, 1.0), meaning)
+}
+
+/// The floor of noise under `floor` in a table.
+pub(crate) fn noise_floor(at: &TomlPath, floor: &Quantity) -> Result<f64, Error> {
+    at.bounded("floor", floor, Dimension::Acceleration, (0.0, 10.0), "an acceleration from 0 to 10 m/s^2")
 }
 
 /// The covariances of the means, the same on all axes; of rests that are measured their own.

@@ -54,20 +54,12 @@ impl Problem {
     }
 }
 
-/// Reads, reduces and fits a session. `progress` is called with the number of bytes read, from any thread; most bytes
-/// are read twice.
+/// Reads, reduces and fits a session. Plateaus that are `held_out` are reduced and shown with their residuals, but not fitted. `progress` is
+/// called with the number of bytes read, from any thread; most bytes are read twice.
 ///
 /// # Errors
-/// [`Error`] naming the file, the place, what was found and what was expected.
-pub fn calibrate(session: &Session, method: Method, progress: OnProgress) -> Result<CalibrationResult, Error> {
-    calibrate_without(session, &[], method, progress)
-}
-
-/// [`calibrate`] with some plateaus held out: reduced and shown with their residuals, but not fitted.
-///
-/// # Errors
-/// As [`calibrate`]; and if the session has no such plateau.
-pub fn calibrate_without(
+/// [`Error`] naming the file, the place, what was found and what was expected; if the session has no such plateau.
+pub fn calibrate(
     session: &Session,
     held_out: &[PlateauName],
     method: Method,
@@ -83,7 +75,7 @@ pub fn calibrate_without(
 /// held out then, and returned beside the result. `alpha` is the family-wise error of singling out.
 ///
 /// # Errors
-/// As [`calibrate_without`].
+/// As [`calibrate`].
 pub(crate) fn calibrate_watched(
     session: &Session,
     held_out: &[usize],

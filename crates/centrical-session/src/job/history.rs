@@ -14,7 +14,6 @@ mod of_data;
 mod read;
 mod results;
 mod station;
-mod superseded;
 mod unit;
 mod units;
 

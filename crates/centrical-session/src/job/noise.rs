@@ -1,6 +1,5 @@
 //! The noise of a record, or of one plateau of a session.
 
-mod analysis;
 mod request;
 mod series;
 

@@ -1,6 +1,5 @@
 //! A session as a laboratory would deliver it, of a unit whose truth is known.
 
-mod files;
 mod session;
 mod session_text;
 

@@ -50,8 +50,13 @@ impl Input {
             pieces.consume(read);
             advance(progress, 0)?;
         }
-        let sha256 = hash.finalize().iter().fold(String::new(), |text, byte| text + &format!("{byte:02x}"));
+        let sha256 = hexadecimal(&hash.finalize());
         let path = file.strip_prefix(folder).unwrap_or(file);
         Ok(Self { path: path.to_string_lossy().replace('\\', "/"), sha256 })
     }
+}
+
+/// Bytes as hexadecimal digits.
+pub(crate) fn hexadecimal(bytes: &[u8]) -> String {
+    bytes.iter().fold(String::new(), |text, byte| text + &format!("{byte:02x}"))
 }

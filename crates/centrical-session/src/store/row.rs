@@ -1,12 +1,11 @@
 //! One calibration as one row.
 
-use std::fmt::Write;
-
 use centrical::Group;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
 use crate::quantity::Date;
+use crate::record::hexadecimal;
 
 /// Whether a calibration was done.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
@@ -166,8 +165,7 @@ impl Row {
 
     /// Combined covariance of parameters `i` and `j`; NaN where one is not estimable, nothing if covariances were not read.
     pub fn covariance_of(&self, i: usize, j: usize) -> Option<f64> {
-        let (low, high) = (i.min(j), i.max(j));
-        self.covariance.get(high * (high + 1) / 2 + low).copied()
+        self.covariance.get(packed(i, j)).copied()
     }
 }
 
@@ -177,10 +175,13 @@ pub fn days_since_1970(date: &str) -> Option<i64> {
     date.parse::<Date>().ok()?.days_since(first).map(i64::from)
 }
 
+/// Place of the entry of parameters `i` and `j` in a lower triangle by rows.
+pub(crate) fn packed(i: usize, j: usize) -> usize {
+    let (low, high) = (i.min(j), i.max(j));
+    high * (high + 1) / 2 + low
+}
+
 /// SHA-256, hexadecimal.
 pub fn sha256(bytes: &[u8]) -> String {
-    Sha256::digest(bytes).iter().fold(String::new(), |mut text, byte| {
-        let _ = write!(text, "{byte:02x}");
-        text
-    })
+    hexadecimal(&Sha256::digest(bytes))
 }

@@ -6,7 +6,7 @@ use std::fs::{self, File};
 use std::iter;
 
 use centrical::{OnProgress, advance, unwatched};
-use centrical_table::{create_folder, write_whole};
+use centrical_table::{Source, create_folder, write_whole};
 
 use super::folder::Store;
 use super::part::{self, Part};
@@ -84,7 +84,8 @@ impl Store {
     /// A copy that is there stays, unless it is damaged: it may be what the caller reads.
     fn copy_result(&self, key: &str, bytes: &[u8]) -> Result<(), Error> {
         let file = self.result_file(key);
-        if fs::read(&file).is_ok_and(|there| there == bytes) {
+        let there = Source::open(&file, "a result").and_then(|there| there.bytes(bytes.len() as u64, "a result"));
+        if there.is_ok_and(|there| there == bytes) {
             return Ok(());
         }
         create_folder(&self.results_folder())?;

@@ -334,7 +334,7 @@ fn candidates_costs_and_targets() {
         let sample = Sample::new("");
         assert!(CANDIDATES.contains(from), "{from}");
         let file = sample.file("plan.toml", CANDIDATES.replacen(from, to, 1));
-        let message = sample.relative(&read_planning(&file).expect_err("the plan is wrong").to_string());
+        let message = sample.relative(&read_planning(&file, None).expect_err("the plan is wrong").to_string());
         assert_eq!(message, format!("plan.toml, {expected}"));
     }
 }

@@ -37,7 +37,7 @@ fn the_result_has_the_bytes_of_that_from_files() {
     of_memory.inputs.clone_from(&of_files.inputs);
     assert_eq!(format!("{of_memory:?}"), format!("{of_files:?}"));
     let json = |reduced| calibrate_reduced(&files, reduced, Method::Exact, &unwatched).unwrap().to_json().unwrap();
-    assert_eq!(json(&of_memory), calibrate(&files, Method::Exact, &unwatched).unwrap().to_json().unwrap());
+    assert_eq!(json(&of_memory), calibrate(&files, &[], Method::Exact, &unwatched).unwrap().to_json().unwrap());
 }
 
 /// The session of the same files in memory, and none on disk.
@@ -45,7 +45,7 @@ fn in_memory(session: &Session) -> Session {
     let on_disk = session.file.parent().unwrap();
     let text = fs::read_to_string(&session.file).unwrap();
     let nowhere = Folder::at(Path::new("nowhere"));
-    let missing = Session::parse(&text, nowhere.clone()).and_then(|s| calibrate(&s, Method::Exact, &unwatched));
+    let missing = Session::parse(&text, nowhere.clone()).and_then(|s| calibrate(&s, &[], Method::Exact, &unwatched));
     assert_eq!(missing.unwrap_err().kind(), ErrorKind::Missing);
     let with = |folder: Folder, file: &Path| {
         folder.with(file.strip_prefix(on_disk).unwrap().to_str().unwrap(), fs::read(file).unwrap().into())
@@ -70,7 +70,7 @@ fn files_in_memory_give_the_bytes_of_those_on_disk() {
             let files = Session::read(&on_disk).unwrap();
             let memory = in_memory(&files);
             assert_eq!(memory.record_bytes(), files.record_bytes());
-            let json = |session| calibrate(session, Method::Exact, &unwatched).unwrap().to_json().unwrap();
+            let json = |session| calibrate(session, &[], Method::Exact, &unwatched).unwrap().to_json().unwrap();
             assert_eq!(json(&memory), json(&files));
             // The experiment file is in memory, too.
             let (session, reduced) = reduce(&memory, &unwatched).unwrap();

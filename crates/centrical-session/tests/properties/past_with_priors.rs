@@ -173,7 +173,7 @@ fn priors_of_a_session_are_taken_out_of_its_row() {
     let prior = "\n[prior]\nG1_33 = { mean = \"-0.9 ug/g^2\", standard_uncertainty = \"0.03 ug/g^2\" }\nG0_22 = { mean = \"1085 ppm\", standard_uncertainty = \"8 ppm\" }\nalpha_1 = \"1 mrad\"\n";
     fs::write(folder.path().join("experiment.toml"), text + prior).unwrap();
     let drawn = Session::read(folder.path()).unwrap();
-    let results = [plain, drawn].map(|session| calibrate(&session, Method::Exact, &unwatched).unwrap());
+    let results = [plain, drawn].map(|session| calibrate(&session, &[], Method::Exact, &unwatched).unwrap());
     let rows = results.each_ref().map(|result: &CalibrationResult| result.row(result.to_json().unwrap().as_bytes()));
     // That of the machine is a part of the session.
     let names: Vec<&str> = rows[1].priors.iter().map(|prior| prior.parameter.as_str()).collect();

@@ -52,7 +52,7 @@ impl Case {
 
     /// The best plan from the candidates of the example.
     fn planned() -> (Self, TypeB) {
-        let mut planning = read_planning(&example("best.toml")).unwrap();
+        let mut planning = read_planning(&example("best.toml"), None).unwrap();
         let plan = planning.task.plan(false, &unwatched).unwrap();
         let (experiment, weights) = planning.task.candidates.experiment_of(&plan.schedule);
         let model = planning.task.model().in_experiment(experiment);
@@ -140,7 +140,7 @@ fn every_parameter_of_the_best_plan_scatters_as_predicted() {
 #[ignore = "some minutes; run by .ci/run predictions"]
 fn every_parameter_of_the_source_scatters_as_predicted() {
     let normalised = Case::normalised();
-    let stated = *read_planning(&example("best.toml")).unwrap().task.model().stated();
+    let stated = *read_planning(&example("best.toml"), None).unwrap().task.model().stated();
     let all = normalised.model.parameters().len();
     assert_eq!(normalised.compare("[K5.5], type A", &normalised.truth(0.0), &TypeB::default()), all);
     normalised.compare("[K5.5] of a unit with errors, type A and B", &normalised.truth(0.3), &stated);

@@ -49,7 +49,7 @@ fn a_session_finds_the_rests_that_a_tumble_finds() {
         let session = Session::parse(&of_example(more), Folder::at(folder.path())).unwrap();
         let stated = (!more.is_empty()).then(|| StatedAttitudes::named(&table, 1e-3).unwrap());
         let expected = tumbled(folder.path(), stated);
-        let result = calibrate(&session, Method::Exact, &unwatched).unwrap();
+        let result = calibrate(&session, &[], Method::Exact, &unwatched).unwrap();
         assert_eq!(result.parameters, expected.parameters);
         assert_eq!(result.plateaus, expected.plateaus);
         assert_eq!(result.inputs.len(), if more.is_empty() { 2 } else { 3 });
@@ -57,7 +57,7 @@ fn a_session_finds_the_rests_that_a_tumble_finds() {
         assert_eq!(session.rests().count(), 24);
         let again = folder.path().join(format!("reduced{n}"));
         write_reduced(&session, &reduced, None, TableFormat::Csv, &again, &unwatched).unwrap();
-        let again = calibrate(&Session::read(&again).unwrap(), Method::Exact, &unwatched).unwrap();
+        let again = calibrate(&Session::read(&again).unwrap(), &[], Method::Exact, &unwatched).unwrap();
         assert_eq!(again.parameters, expected.parameters);
     }
 }
@@ -68,7 +68,7 @@ fn wrong_records_of_rests_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     let refused = |text: &str| {
         let session = Session::parse(text, Folder::at(folder.path()));
-        session.and_then(|session| calibrate(&session, Method::Exact, &unwatched)).unwrap_err().to_string()
+        session.and_then(|session| calibrate(&session, &[], Method::Exact, &unwatched)).unwrap_err().to_string()
     };
     for (more, expected) in [
         ("rests = \"rests.csv\"", "record: found a record beside a table of rests, expected one or the other"),

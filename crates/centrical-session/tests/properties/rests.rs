@@ -23,7 +23,7 @@ fn reduced_example(folder: &Path) -> CalibrationResult {
     let session = Session::read(&example).unwrap();
     let (_, reduced) = reduce(&session, &unwatched).unwrap();
     write_reduced(&session, &reduced, None, TableFormat::Csv, folder, &unwatched).unwrap();
-    calibrate(&Session::read(folder).unwrap(), Method::Exact, &unwatched).unwrap()
+    calibrate(&Session::read(folder).unwrap(), &[], Method::Exact, &unwatched).unwrap()
 }
 
 /// Rests of the unit with these coefficients on the faces, edges and corners of a cube.
@@ -80,7 +80,7 @@ fn rests_and_centrifuge_are_one_fit() {
     with_rests(folder.path(), Some("0 mg"));
     let session = Session::read(folder.path()).unwrap();
     assert_eq!((session.rests().count(), session.mountings.len()), (26, 12));
-    let together = calibrate(&session, Method::Exact, &unwatched).unwrap();
+    let together = calibrate(&session, &[], Method::Exact, &unwatched).unwrap();
     let gain = |name: &str| {
         let uncertainty = |result: &CalibrationResult| result.parameter(name).unwrap().standard_uncertainty.unwrap();
         uncertainty(&alone) / uncertainty(&together)
@@ -92,7 +92,7 @@ fn rests_and_centrifuge_are_one_fit() {
         assert!(gain(name) > 4.0, "{name}: {}", gain(name));
     }
     assert!(together.objections().is_empty(), "{:?}", together.objections());
-    let recursive = calibrate(&session, Method::Recursive, &unwatched).unwrap();
+    let recursive = calibrate(&session, &[], Method::Recursive, &unwatched).unwrap();
     for (one, other) in together.parameters.iter().zip(&recursive.parameters) {
         let (a, b, u) = (one.value.unwrap(), other.value.unwrap(), one.standard_uncertainty.unwrap());
         assert!((a - b).abs() < 1e-3 * u, "{}: {a} {b}", one.name);
@@ -100,7 +100,7 @@ fn rests_and_centrifuge_are_one_fit() {
     let again = tempfile::tempdir().unwrap();
     write_reduced(&session, &reduce(&session, &unwatched).unwrap().1, None, TableFormat::Csv, again.path(), &unwatched)
         .unwrap();
-    let reduced = calibrate(&Session::read(again.path()).unwrap(), Method::Exact, &unwatched).unwrap();
+    let reduced = calibrate(&Session::read(again.path()).unwrap(), &[], Method::Exact, &unwatched).unwrap();
     assert_eq!(reduced.parameters, together.parameters);
     // A watch knows the centrifuge alone.
     let on_arm = session.on_arm();
@@ -123,7 +123,7 @@ fn rests_after_a_switch_off_have_a_bias_of_their_own() {
         write_plateaus(&folder.path().join("rests.csv"), &rests).unwrap();
         with_rests(folder.path(), bias_change);
         let session = Session::read(folder.path()).unwrap();
-        (alone, calibrate(&session, Method::Exact, &unwatched).unwrap())
+        (alone, calibrate(&session, &[], Method::Exact, &unwatched).unwrap())
     };
     let estimate = |result: &CalibrationResult, name: &str| {
         let parameter = result.parameter(name).unwrap();
@@ -195,7 +195,7 @@ fn errors_in_axes_of_the_case_are_as_large_as_stated() {
         fs::write(folder.path().join("attitudes.csv"), attitudes).unwrap();
         write_plateaus(&folder.path().join("rests.csv"), &rests).unwrap();
         let session = Session::read(folder.path()).unwrap();
-        let result = calibrate(&session, Method::Exact, &unwatched).unwrap();
+        let result = calibrate(&session, &[], Method::Exact, &unwatched).unwrap();
         let axes = Axes::Case.of(result, Path::new("result.json")).unwrap().axes.unwrap();
         let places = NAMES.map(|name| axes.parameters.iter().position(|p| p.name == name).unwrap());
         let truth: Vec<f64> = bias.iter().chain(scale.transpose().iter()).copied().collect();
@@ -267,7 +267,7 @@ fn planned_rests_are_no_measurement() {
     let text = fs::read_to_string(&file).unwrap();
     fs::write(&file, format!("{text}\n[[tumble]]\nattitudes = \"cube\"\n")).unwrap();
     let session = Session::read(folder.path()).unwrap();
-    let message = calibrate(&session, Method::Exact, &unwatched).unwrap_err().to_string();
+    let message = calibrate(&session, &[], Method::Exact, &unwatched).unwrap_err().to_string();
     let expected =
         "[[tumble]] 1, rests: found rests that are planned, expected a table of rests, in a session that is measured";
     assert!(message.ends_with(expected), "{message}");

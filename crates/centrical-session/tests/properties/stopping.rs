@@ -61,7 +61,7 @@ fn session() -> Session {
 fn jobs_on_records() {
     let session = session();
     is_stopped(|caller| reduce(&session, &|n| caller.asked(n)));
-    is_stopped(|caller| calibrate(&session, Method::Exact, &|n| caller.asked(n)));
+    is_stopped(|caller| calibrate(&session, &[], Method::Exact, &|n| caller.asked(n)));
     is_stopped(|caller| assess(&session, &AssessmentRequest::default(), &|n| caller.asked(n)));
     is_stopped(|caller| select_model(&session, &|n| caller.asked(n)));
     is_stopped(|caller| subject(&session.file, &|n| caller.asked(n)));
@@ -116,7 +116,7 @@ fn a_draft() {
 #[test]
 fn histories() {
     let folder = TempDir::new().unwrap();
-    let mut result = calibrate(&session(), Method::Exact, &unwatched).unwrap();
+    let mut result = calibrate(&session(), &[], Method::Exact, &unwatched).unwrap();
     let mut files = Vec::new();
     for day in 10..20 {
         result.session.date = format!("2026-01-{day}");
@@ -170,7 +170,7 @@ fn a_simulation_leaves_no_part_of_a_record() {
 fn a_compensation_leaves_no_part_of_its_output() {
     let folder = TempDir::new().unwrap();
     let result = folder.path().join("result.json");
-    calibrate(&session(), Method::Exact, &unwatched).unwrap().write(&result).unwrap();
+    calibrate(&session(), &[], Method::Exact, &unwatched).unwrap().write(&result).unwrap();
     let out = folder.path().join("forces.csv");
     let record = example().join("ta-200/records/m01.csv");
     let request = CompensationRequest {

@@ -89,7 +89,7 @@ fn squared(result: &CalibrationResult, difference: &[f64]) -> f64 {
 }
 
 fn calibrated(session: &Session) -> CalibrationResult {
-    calibrate(session, Method::Exact, &unwatched).unwrap()
+    calibrate(session, &[], Method::Exact, &unwatched).unwrap()
 }
 
 /// Every eighth sample of all three newtonometers.

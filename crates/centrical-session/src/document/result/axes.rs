@@ -1,12 +1,13 @@
-//! From a result to its error model in other axes, and the attitude of its case.
+//! From a result to its error model in other axes, the attitude of its case, and what known attitudes show.
 
+use centrical::reduction::Mistake;
 use centrical::uncertainty::ModelInAxes;
 use centrical::{Group, rotation, rotation_rate};
 use centrical_compensate::Term;
 use nalgebra::{DMatrix, Matrix3, Matrix3xX, Rotation3, Vector3};
 
 use super::axes_summary::{AxesName, AxesParameter, AxesSummary};
-use super::schema::CalibrationResult;
+use super::schema::{CalibrationResult, PositionSummary};
 use crate::error::NoErrorModel;
 
 /// Where axes lie, and how well that is known.
@@ -243,4 +244,23 @@ impl CalibrationResult {
         }
         Ok(Attitude::of_case(&mean, turn, scatter, Some(turns.len())))
     }
+}
+
+/// Attitudes nearer than this are taken for one: a rest takes the nearest.
+const NEAR: f64 = 0.1;
+
+impl CalibrationResult {
+    /// Whether the known attitudes show the sign of each axis and which column is which. Gravity alone does not; nor do attitudes
+    /// that another sign or order of the columns takes to one another, as it does the faces of a cube.
+    pub fn attitudes_show_columns(&self) -> bool {
+        let is_known = |position: &&PositionSummary| position.attitude_uncertainty.is_some();
+        let ups: Vec<Vector3<f64>> = self.model.positions.iter().filter(is_known).map(up).collect();
+        let is_near = |up: &Vector3<f64>| ups.iter().any(|other| (up - other).norm() < NEAR);
+        !ups.is_empty() && !Mistake::of_columns().any(|columns| ups.iter().all(|up| is_near(&columns.reading(up))))
+    }
+}
+
+/// The vertical in instrument axes, which the matrix of a position takes from the third axis.
+fn up(position: &PositionSummary) -> Vector3<f64> {
+    Vector3::from_fn(|axis, _| position.matrix[axis][2])
 }

@@ -1,6 +1,6 @@
 //! How far a result can be trusted: the uncertainties by their sources, and the checks of the fit.
 
-use centrical::uncertainty::{Budget, Level, Pattern, Prediction, Rivals, Trend, Validity};
+use centrical::uncertainty::{BetweenRests, Budget, Level, Pattern, Prediction, Rivals, Trend, Validity};
 use centrical::{Calibration, Experiment, FitError};
 use centrical::{Prior, Source};
 use serde::{Deserialize, Serialize};
@@ -252,5 +252,20 @@ impl PatternSummary {
             standard_uncertainty: pattern.standard_uncertainty,
             probability: pattern.family_wise,
         }
+    }
+}
+
+/// Standard deviations of what the residuals of rests alone cannot exclude; the uncertainties include both.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct BetweenRestsSummary {
+    /// Scatter of the reading of a rest beside its noise [m/s^2].
+    pub scatter: f64,
+    /// Change of each bias from the first rest to the last [m/s^2]; zero where the session has or states one.
+    pub drift: f64,
+}
+
+impl From<BetweenRests> for BetweenRestsSummary {
+    fn from(BetweenRests { scatter, drift }: BetweenRests) -> Self {
+        Self { scatter, drift }
     }
 }

@@ -8,8 +8,7 @@ use centrical::{Group, PairRelation, ReferencePoint, Termination};
 use serde::{Deserialize, Serialize};
 
 use super::axes_summary::AxesSummary;
-use super::between_rests::BetweenRestsSummary;
-use super::budget_and_checks::{BudgetSummary, ValiditySummary};
+use super::budget_and_checks::{BetweenRestsSummary, BudgetSummary, ValiditySummary};
 use super::next_attitude::NextAttitudeSummary;
 use super::rivals::RestsOn;
 use super::speeds::SpeedsSummary;

@@ -5,7 +5,6 @@ use std::time::{SystemTime, UNIX_EPOCH};
 
 use centrical::observability::Cause;
 use centrical::{Group, SetPoint};
-use centrical_table::write_stream;
 use serde::{Deserialize, Serialize};
 
 use super::history::InnovationSummary;
@@ -290,8 +289,7 @@ impl LiveReport {
     /// # Errors
     /// [`Error::Json`] when a value has no place in JSON, [`Error::Table`] when the folder does not take it.
     pub fn write(&self, file: &Path) -> Result<(), Error> {
-        let text = json::line(LIVE_SCHEMA, self)?;
-        Ok(write_stream(file, |output| output.write_all(text.as_bytes()))?)
+        json::write_line(LIVE_SCHEMA, self, file)
     }
 
     /// Age of the last sample at a time [s]: since the record changed.

@@ -4,7 +4,6 @@ use std::path::Path;
 
 use centrical::fit::{Follower, Innovation, Progress};
 use centrical::{MeasurementModel, Observation, unwatched};
-use centrical_table::write_stream;
 use nalgebra::{Matrix3, Vector3};
 use serde::{Deserialize, Serialize};
 
@@ -136,8 +135,7 @@ impl WatchState {
     /// # Errors
     /// [`Error::Json`] when a value has no place in JSON, [`Error::Table`] when the folder does not take it.
     pub fn write(&self, file: &Path) -> Result<(), Error> {
-        let text = json::line(SCHEMA, self)?;
-        Ok(write_stream(file, |output| output.write_all(text.as_bytes()))?)
+        json::write_line(SCHEMA, self, file)
     }
 
     /// Notes the point, and where the plateaus are linearised.

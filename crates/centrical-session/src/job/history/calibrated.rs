@@ -19,7 +19,7 @@ use self::shared_errors::SharedErrors;
 use super::of_data::OfData;
 use crate::document::{OutputSummary, PastSession};
 use crate::quantity::Date;
-use crate::store::{Row, SharedInfluence};
+use crate::store::{Row, SharedInfluence, packed};
 
 /// One calibration.
 #[derive(Debug, Clone)]
@@ -275,9 +275,8 @@ impl Calibrated {
 
     /// Of a calibration without covariances only the variances are known.
     fn covariance(&self, i: usize, j: usize) -> f64 {
-        let (low, high) = (i.min(j), i.max(j));
         let variance = || if i == j { self.standard_uncertainties[i].powi(2) } else { f64::NAN };
-        self.covariance.get(high * (high + 1) / 2 + low).copied().unwrap_or_else(variance)
+        self.covariance.get(packed(i, j)).copied().unwrap_or_else(variance)
     }
 }
 
@@ -300,8 +299,7 @@ struct Seen<'a> {
 
 impl Seen<'_> {
     fn covariance(&self, i: usize, j: usize) -> f64 {
-        let (low, high) = (i.min(j), i.max(j));
-        self.covariance.map_or_else(|| self.of.covariance(i, j), |packed| packed[high * (high + 1) / 2 + low])
+        self.covariance.map_or_else(|| self.of.covariance(i, j), |triangle| triangle[packed(i, j)])
     }
 
     /// Covariance of the errors of this session alone.

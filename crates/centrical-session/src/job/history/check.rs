@@ -8,7 +8,7 @@ use std::time::SystemTime;
 use centrical::OnProgress;
 use centrical_table::Source;
 
-use super::superseded::without_superseded;
+use super::list::without_superseded;
 use crate::document::{CalibrationResult, Doubt, DoubtKind, HistoryList};
 use crate::error::{Error, ErrorKind};
 use crate::record::Input;

@@ -12,7 +12,7 @@
 
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
-use crate::store::{Row, SharedInfluence};
+use crate::store::{Row, SharedInfluence, packed};
 
 /// Estimates by the data alone. Combinations that priors alone determine stay as they are; the error of the priors in them is shared.
 #[derive(Debug, Clone)]
@@ -127,7 +127,7 @@ impl Scattered<'_> {
         let mut triangle = vec![f64::NAN; self.count * (self.count + 1) / 2];
         for (a, &i) in self.determined.iter().enumerate() {
             for (b, &j) in self.determined.iter().enumerate().take(a + 1) {
-                triangle[i * (i + 1) / 2 + j] = matrix[(a, b)];
+                triangle[packed(i, j)] = matrix[(a, b)];
             }
         }
         triangle

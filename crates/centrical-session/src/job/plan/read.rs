@@ -1,7 +1,6 @@
 //! Plans with what is expected of the unit: the earlier result that they name.
 
-use std::cell::RefCell;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use crate::document::CalibrationResult;
 use crate::error::Error;
@@ -12,26 +11,25 @@ use crate::experiment::{ExpectedValues, Plan, Planning};
 /// # Errors
 /// As [`Plan::read`] and [`CalibrationResult::read`].
 pub fn read_plan(path: &Path) -> Result<Option<Plan>, Error> {
-    Plan::read(path, &values)
+    let mut plan = Plan::read(path)?;
+    if let Some(plan) = &mut plan
+        && let Some(earlier) = &plan.earlier
+    {
+        plan.expect(&values(earlier)?);
+    }
+    Ok(plan)
 }
 
-/// Reads what is to be planned and the earlier result that it names.
+/// Reads what is to be planned and the earlier result that it names; a `time` available [s] takes the place of the one in the file.
 ///
 /// # Errors
 /// As [`Planning::read`] and [`CalibrationResult::read`].
-pub fn read_planning(path: &Path) -> Result<Planning, Error> {
-    read_with_inputs(path, None).map(|(planning, _)| planning)
-}
-
-/// The same with the files that were read; a `time` available [s] takes the place of the one in the file.
-pub(super) fn read_with_inputs(path: &Path, time: Option<f64>) -> Result<(Planning, Vec<PathBuf>), Error> {
-    let inputs = RefCell::new(vec![path.to_owned()]);
-    let earlier = |result: &Path| {
-        inputs.borrow_mut().push(result.to_owned());
-        values(result)
-    };
-    let planning = Planning::read(path, time, &earlier)?;
-    Ok((planning, inputs.take()))
+pub fn read_planning(path: &Path, time: Option<f64>) -> Result<Planning, Error> {
+    let mut planning = Planning::read(path, time)?;
+    if let Some(earlier) = &planning.earlier {
+        planning.expect(&values(earlier)?);
+    }
+    Ok(planning)
 }
 
 /// The values of an earlier result that are determined.

@@ -9,7 +9,7 @@ use centrical_table::Extent;
 use nalgebra::Vector3;
 
 use crate::error::{Error, Place};
-use crate::experiment::{KnownAttitudes, RecordedRests, RestTable, Session};
+use crate::experiment::{KnownAttitudes, LARGEST_SCALE_ERROR, RecordedRests, RestTable, Session};
 use crate::record::read_records;
 use crate::reduced::{ReducedPlateau, rest_rows};
 
@@ -62,9 +62,8 @@ pub(crate) fn mean_size(means: &[Vector3<f64>]) -> f64 {
 
 /// Whether rests of this size [m/s^2] are of gravity, or readings in another unit: no scale factor is as far off its unit.
 pub(crate) fn is_of_gravity(size: f64, gravity: f64) -> bool {
-    /// Most that the size of a rest may differ from gravity, as a factor.
-    const MOST_OFF: f64 = 1.3;
-    (gravity / MOST_OFF..gravity * MOST_OFF).contains(&size)
+    let most = 1.0 + LARGEST_SCALE_ERROR;
+    (gravity / most..gravity * most).contains(&size)
 }
 
 /// The session with all its rests, and these averaged: those that are to be found in records are found. `progress` is called

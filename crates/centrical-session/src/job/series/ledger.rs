@@ -17,7 +17,7 @@ use serde::{Deserialize, Serialize};
 use super::one::Done;
 use super::request::LEDGER;
 use crate::document::{Method, json_line};
-use crate::error::Error;
+use crate::error::{Error, ErrorKind};
 use crate::record::Input;
 use crate::store::Status;
 
@@ -59,16 +59,14 @@ struct Known {
 /// [`Error`] when the lines of the series cannot be read.
 pub fn last_rows(folder: &Path) -> Result<BTreeMap<String, String>, Error> {
     let text = text_of(&folder.join(LEDGER))?;
-    let entries = whole_lines(&text).filter_map(|line| serde_json::from_str::<Entry>(line).ok());
-    Ok(entries.map(|entry| (entry.session, entry.key)).collect())
+    Ok(whole_lines(&text).map(|(_, entry)| (entry.session, entry.key)).collect())
 }
 
 impl Ledger {
     /// Reads the lines of earlier runs; one that a kill left in part is dropped.
     pub fn read(file: &Path, method: Method) -> Result<Self, Error> {
         let text = text_of(file)?;
-        let entries = whole_lines(&text).filter_map(|line| serde_json::from_str::<Entry>(line).ok());
-        let entries = entries.map(|entry| (entry.session.clone(), entry)).collect();
+        let entries = whole_lines(&text).map(|(_, entry)| (entry.session.clone(), entry)).collect();
         Ok(Self { file: file.to_owned(), output: None, method, entries })
     }
 
@@ -118,7 +116,7 @@ impl Ledger {
     /// Opens the file for further lines, after one that is not whole is taken out.
     fn begin(&self) -> Result<File, Error> {
         let text = text_of(&self.file)?;
-        let whole: String = whole_lines(&text).collect();
+        let whole: String = whole_lines(&text).map(|(line, _)| line).collect();
         if whole != text {
             write_whole(&self.file, whole.as_bytes())?;
         }
@@ -142,16 +140,21 @@ impl Known {
     }
 }
 
+/// Largest file of a series [bytes]: the lines of 500,000 sessions of 24 mountings.
+const LARGEST: u64 = 4 << 30;
+
 fn text_of(file: &Path) -> Result<String, Error> {
-    match fs::read_to_string(file) {
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(String::new()),
-        text => text.map_err(|error| Error::reading(file, error, "the lines of a series")),
+    let expected = "the lines of a series";
+    match Source::open(file, expected).and_then(|source| source.text(LARGEST, expected)).map_err(Error::from) {
+        Err(error) if error.kind() == ErrorKind::Missing => Ok(String::new()),
+        text => text,
     }
 }
 
-/// The lines that are entries of an earlier run.
-fn whole_lines(text: &str) -> impl Iterator<Item = &str> {
-    text.split_inclusive('\n').filter(|line| line.ends_with('\n') && serde_json::from_str::<Entry>(line).is_ok())
+/// The lines that are entries of an earlier run, and these.
+fn whole_lines(text: &str) -> impl Iterator<Item = (&str, Entry)> {
+    let whole = text.split_inclusive('\n').filter(|line| line.ends_with('\n'));
+    whole.filter_map(|line| Some((line, serde_json::from_str(line).ok()?)))
 }
 
 /// Size and time of change [ns].

@@ -9,8 +9,7 @@ use centrical::{OnProgress, advance};
 use centrical_table::{ColumnName, TableFormat, claim_folder, create_folder, refuse_inputs, write_table, write_whole};
 use rayon::prelude::*;
 
-use super::files::{attitudes_path, pulses_path, record_path, telemetry_path, tumble_path};
-use super::session_text::with_files;
+use super::session_text::{attitudes_path, pulses_path, record_path, telemetry_path, tumble_path, with_files};
 use crate::document::{Written, WrittenSession, WrittenTumble, truth_json};
 use crate::error::{Error, Place};
 use crate::experiment::{EXPERIMENT_FILE, OutputUnit, RestTable, Session, refuse_session, write_attitudes};

@@ -1,9 +1,9 @@
-//! The plan's text as the session's: every mounting and every tumble names its files; all else stays as it was written.
+//! Where the tables of a session are, and the plan's text as the session's: every mounting and every tumble names its files; all else stays as
+//! it was written.
 
 use centrical_table::TableFormat;
 use toml_edit::{Item, TableLike, value};
 
-use super::files::{attitudes_path, pulses_path, record_path, telemetry_path, tumble_path};
 use crate::error::{Error, Place};
 use crate::experiment::{RestTable, Session};
 use crate::settings::{editable, read_settings, tables_of};
@@ -51,4 +51,29 @@ fn name_tumble(table: &mut dyn TableLike, tumble: usize, format: TableFormat, re
         Some(known) if known.file.is_some() => drop(table.insert("attitudes", value(attitudes_path(tumble)))),
         Some(_) => {}
     }
+}
+
+/// Path of the record of a mounting within the session's folder.
+pub(crate) fn record_path(mounting: usize, format: TableFormat) -> String {
+    format!("records/m{:02}.{}", mounting + 1, format.extension())
+}
+
+/// Path of the pulses of a mounting within the session's folder.
+pub(crate) fn pulses_path(mounting: usize, format: TableFormat) -> String {
+    format!("pulses/m{:02}.{}", mounting + 1, format.extension())
+}
+
+/// Path of the telemetry of a mounting within the session's folder.
+pub(crate) fn telemetry_path(mounting: usize, format: TableFormat) -> String {
+    format!("telemetry/m{:02}.{}", mounting + 1, format.extension())
+}
+
+/// Path of the record of the rests of `[[tumble]]` number `tumble`, from 0, within the session's folder.
+pub(crate) fn tumble_path(tumble: usize, format: TableFormat) -> String {
+    format!("records/tumble-{}.{}", tumble + 1, format.extension())
+}
+
+/// Name of the table of their attitudes.
+pub(crate) fn attitudes_path(tumble: usize) -> String {
+    format!("attitudes-{}.csv", tumble + 1)
 }

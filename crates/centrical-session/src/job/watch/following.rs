@@ -19,7 +19,7 @@ use super::changed::Changed;
 use super::progress::WatchProgress;
 use super::request::{WatchEnd, WatchEvent, WatchRequest};
 use super::rests;
-use crate::document::{LiveStatus, WatchState, WatchedPlateau, append_history, keep_history};
+use crate::document::{LiveStatus, WatchState, WatchedPlateau, append_history, keep_history, largest_force};
 use crate::error::{Error, Place};
 use crate::experiment::{PlateauName, Session};
 use crate::job::calibrate::calibrate_watched;
@@ -65,9 +65,8 @@ impl<'a> Following<'a> {
         let follower = Follower::resume(model, state.taken(), &state.point, state.reference())
             .map_err(|source| Error::fit(&state_file, source))?;
         let experiment = &session.experiment;
-        let load = |s: &SetPoint| experiment.nominal(s).norm();
-        let force = experiment.set_points.iter().map(load).fold(0.0, f64::max);
-        let planning = |source| Error::Planning { file: session.file.clone(), source };
+        let force = largest_force(experiment);
+        let planning = |source| Error::planning(&session.file, source);
         let mut next = NextPlateau::new(model, &Criterion::Reading(ReadingRange { force })).map_err(planning)?;
         let taken: Vec<Weight> = follower.taken().iter().map(Weight::from).collect();
         next.take(&taken).map_err(planning)?;
@@ -344,7 +343,7 @@ impl<'a> Following<'a> {
     }
 
     fn planned<T>(&self, outcome: Result<T, PlanError>) -> Result<T, Error> {
-        outcome.map_err(|source| Error::Planning { file: self.session.file.clone(), source })
+        outcome.map_err(|source| Error::planning(&self.session.file, source))
     }
 
     fn fitted<T>(&self, outcome: Result<T, FitError>) -> Result<T, Error> {
