@@ -31,7 +31,7 @@ pub use self::form::{DecimalSign, StampColumn, TextForm};
 use self::layout::Layout;
 pub(crate) use self::lines::{Lines, Packed, Plain, complete_lines};
 use self::piece::Piece;
-use self::prologue::Prologue;
+use self::prologue::{Prologue, Start};
 pub use self::unit_words::{unit_beside_name, unit_of_word};
 use crate::column::{Before, Field, RowNumber, Rows, TableLines, UnitsFound};
 use crate::error::{Error, Place};
@@ -101,11 +101,7 @@ impl TextReader {
             let mut skip = 0;
             if is_first {
                 read(0, &mut pieces[0])?;
-                let start = match lines::ends_of_lines(&pieces[0].text).or_else(|| lines::endless_line(&pieces[0].text))
-                {
-                    Some((at, found)) => Err((at, Fault::no_table(found))),
-                    None => prologue.read(&pieces[0].text, *line - 1, fields),
-                };
+                let start = start(prologue, &pieces[0].text, *line - 1, fields);
                 if let Some(start) = start.map_err(|(at, fault)| located(file, *line + at, fault))? {
                     *table = Some((start.layout, Vec::new()));
                     skip = start.skipped;
@@ -173,6 +169,14 @@ impl TextReader {
     /// Units that stand beside or below the names of the columns, once rows were read.
     pub fn units(&self) -> Option<&UnitsFound> {
         self.units.as_ref()
+    }
+}
+
+/// What stands before the first row of a text, `first` lines of the file being before it; nothing if there are only comments.
+fn start(prologue: &mut Prologue, text: &[u8], first: u64, fields: &[Field]) -> Result<Option<Start>, (u64, Fault)> {
+    match lines::ends_of_lines(text).or_else(|| lines::endless_line(text)) {
+        Some((at, found)) => Err((at, Fault::no_table(found))),
+        None => prologue.read(text, first, fields),
     }
 }
 
