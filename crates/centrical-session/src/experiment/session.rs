@@ -8,7 +8,7 @@ use centrical::{
 };
 
 use super::folder::Folder;
-use super::form::{Form, ModelTable, RecordEntry, SiteTable};
+use super::form::{Form, ModelTable, MountingTable, RecordEntry, SiteTable};
 use super::plateaus::PlateauTable;
 use super::prior::{self, PriorEntry};
 use super::rests::RestTable;
@@ -84,6 +84,19 @@ pub struct MountingFiles {
 }
 
 impl MountingFiles {
+    /// Those that a table names.
+    fn of(folder: &Folder, table: &MountingTable) -> Self {
+        let path = |name: &Option<String>| name.as_ref().map(|name| folder.join(name));
+        let (record, further_records) = match &table.record {
+            None => (None, None),
+            Some(RecordEntry::One(name)) => (Some(folder.join(name)), None),
+            Some(RecordEntry::Three([first, others @ ..])) => {
+                (Some(folder.join(first)), Some(others.each_ref().map(|name| folder.join(name))))
+            }
+        };
+        Self { record, further_records, telemetry: path(&table.telemetry), pulses: path(&table.pulses) }
+    }
+
     /// The file of the record, or the three of the newtonometers.
     pub fn records(&self) -> impl Iterator<Item = &PathBuf> {
         self.record.iter().chain(self.further_records.iter().flatten())
@@ -242,7 +255,6 @@ impl Session {
             let expected = "[[tumble]] rests, whose biases may differ by it from those on the arm";
             return Err(TomlPath::table(file, "uncertainty").unexpected("bias_change", change.to_string(), expected));
         }
-        let path = |name: &Option<String>| name.as_ref().map(|name| folder.join(name));
         Ok(Self {
             file: file.to_owned(),
             title: form.session.title.clone(),
@@ -258,18 +270,7 @@ impl Session {
             error_model,
             extensions: extensions(file, &form.model)?,
             columns: columns::columns(file, &form.columns, &form.unit)?,
-            mountings: (form.mounting.iter())
-                .map(|m| {
-                    let (record, further_records) = match &m.record {
-                        None => (None, None),
-                        Some(RecordEntry::One(name)) => (Some(folder.join(name)), None),
-                        Some(RecordEntry::Three([first, others @ ..])) => {
-                            (Some(folder.join(first)), Some(others.each_ref().map(|name| folder.join(name))))
-                        }
-                    };
-                    MountingFiles { record, further_records, telemetry: path(&m.telemetry), pulses: path(&m.pulses) }
-                })
-                .collect(),
+            mountings: form.mounting.iter().map(|table| MountingFiles::of(&folder, table)).collect(),
             plateaus: None,
             record_findings: form.record_findings.clone(),
             rest_tables: RestTable::named(file, &folder, &form.tumble)?,
