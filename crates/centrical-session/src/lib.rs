@@ -76,14 +76,13 @@ pub use experiment::{
     Turning, available_time, read_plateaus, write_plateaus,
 };
 pub use job::{
-    AssessmentRequest, Axes, ComparisonRequest, Compensated, CompensationRequest, Draft,
-    InitRequest, LiveRequest, MonteCarloCase, MonteCarloRequest, NoiseRequest, PlanRequest, Recorded,
-    SeriesRequest, SettingsForm, Tumble, TumbleRequest, USUAL_LEVELS, USUAL_TIMES, Watch, WatchEnd, WatchEvent,
-    WatchProgress, WatchRequest, add_result, add_results, assess, calibrate, calibrate_reduced, calibrate_series,
-    check_store, collect_results, compare_results, compensate, compensate_record, init, list_store,
-    matching_paths, noise_of, noise_of_plateau, plan, read_plan, read_planning, reduce, reduce_recorded,
-    reduce_without_inputs, refuse_date, select_model, settings_schema, simulate_session, spelling, subject, subject_of,
-    time_column, tumble, watch, write_reduced,
+    AssessmentRequest, Axes, ComparisonRequest, Compensated, CompensationRequest, Draft, InitRequest, LiveRequest,
+    MonteCarloCase, MonteCarloRequest, NoiseRequest, PlanRequest, Recorded, SeriesRequest, SettingsForm, Tumble,
+    TumbleRequest, USUAL_LEVELS, USUAL_TIMES, Watch, WatchEnd, WatchEvent, WatchProgress, WatchRequest, add_result,
+    add_results, assess, calibrate, calibrate_reduced, calibrate_series, check_store, collect_results, compare_results,
+    compensate, compensate_record, init, list_store, matching_paths, noise_of, noise_of_plateau, plan, read_plan,
+    read_planning, reduce, reduce_recorded, reduce_without_inputs, refuse_date, select_model, settings_schema,
+    simulate_session, spelling, subject, subject_of, time_column, tumble, watch, write_reduced,
 };
 pub use job::{
     Calibrated, CalibratedParameter, ChartLimits, ChartRequest, ComparedUnits, NoHistory, ParameterLimits, Past,

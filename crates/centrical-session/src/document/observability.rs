@@ -38,8 +38,8 @@ impl Subject {
     /// The budget to be expected of a calibration, and the uncertainty of the compensated reading up to the largest load of
     /// the experiment.
     fn prediction(&self) -> Result<PredictionReport, Error> {
-        let prediction =
-            Prediction::of(&self.model, &self.weights, &self.nominal).map_err(|source| Error::fit(&self.file, source))?;
+        let prediction = Prediction::of(&self.model, &self.weights, &self.nominal)
+            .map_err(|source| Error::fit(&self.file, source))?;
         let force = largest_force(self.model.experiment());
         PredictionReport::of(&prediction, ReadingRange { force }, PredictionReport::COVERAGE)
             .map_err(|source| Error::fit(&self.file, source))
