@@ -47,7 +47,6 @@ mod triangle;
 mod turning;
 
 pub use average::{Averaging, PlateauFit, ReducedMounting};
-pub(crate) use colour::EXCLUDED;
 pub use colour::NoiseModel;
 pub use copies::RepeatedRests;
 pub use ellipsoid::CoarseScale;

@@ -36,7 +36,7 @@ pub struct Plan {
     pub title: String,
     /// The experiment, the unit's error model, extensions and priors.
     pub model: MeasurementModel,
-    /// Expected unknowns, zero where nothing is expected: those of the earlier result, once [`Plan::expect`] was told.
+    /// Expected unknowns, zero where nothing is expected: those of the earlier result once it is read.
     pub nominal: Vec<f64>,
     /// How well the mean of each set point will be known.
     pub weights: Vec<Weight>,

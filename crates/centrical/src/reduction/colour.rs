@@ -15,7 +15,7 @@ use super::average::{PlateauFit, ReducedMounting};
 use super::plateau::PlateauMean;
 use contrasts::fast_cosines;
 use mean::mean;
-pub use noise_model::{EXCLUDED, NoiseModel};
+pub use noise_model::NoiseModel;
 use settling::TimeStep;
 
 impl ReducedMounting {

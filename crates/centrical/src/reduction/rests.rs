@@ -19,10 +19,8 @@ use crate::progress::{OnProgress, advance};
 pub struct Rests {
     /// Their means, record by record in the order of time.
     pub means: Vec<Vec<PlateauMean>>,
-    /// Variance of the means along the specific force at most, over the one stated, but for a chance of [`EXCLUDED`]: few rests show the colour of
+    /// Variance of the means along the specific force at most, over the one stated, but for a chance of [`NoiseModel::EXCLUDED`]: few rests show the colour of
     /// their noise poorly.
-    ///
-    /// [`EXCLUDED`]: super::EXCLUDED
     pub noise_at_most: f64,
 }
 

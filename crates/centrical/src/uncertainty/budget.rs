@@ -20,7 +20,8 @@ pub struct Budget {
     contributions: Vec<Contribution>,
     estimable: Vec<bool>,
     covariance: DMatrix<f64>,
-    residual_scale: Option<ResidualScale>,
+    /// Degrees of freedom of the residuals, where they scale type A.
+    residual_scale: Option<usize>,
 }
 
 /// What one source leaves.
@@ -47,12 +48,6 @@ pub struct Improvement {
     pub most: usize,
     /// Its combined uncertainty without the source over that with it.
     pub most_factor: f64,
-}
-
-/// Type A scaled by the residuals.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct ResidualScale {
-    degrees_of_freedom: usize,
 }
 
 impl Calibration<'_> {
@@ -118,7 +113,7 @@ impl Budget {
                 }
             }
             self.covariance = total(&self.contributions, self.estimable.len());
-            self.residual_scale = Some(ResidualScale { degrees_of_freedom: fit.degrees_of_freedom });
+            self.residual_scale = Some(fit.degrees_of_freedom);
         }
         self
     }
@@ -156,8 +151,7 @@ impl Budget {
     /// determined. What the fit weighs, noise, speed of each plateau and priors, is one contribution.
     pub fn degrees_of_freedom(&self, j: usize) -> Option<Degrees> {
         let weights: f64 = self.contributions.iter().filter(|c| c.source.is_weighed()).map(|c| c.variance(j)).sum();
-        let of_residuals =
-            self.residual_scale.map_or(Degrees::Infinite, |s| Degrees::Finite(s.degrees_of_freedom as f64));
+        let of_residuals = self.residual_scale.map_or(Degrees::Infinite, |nu| Degrees::Finite(nu as f64));
         let others = self.contributions.iter().filter(|c| !c.source.is_weighed());
         let mut list = vec![(weights.sqrt(), of_residuals)];
         list.extend(others.map(|c| (c.standard_uncertainty(j), c.degrees)));

@@ -2,7 +2,7 @@
 
 use crate::fit::Termination;
 
-use crate::reduction::EXCLUDED;
+use crate::reduction::NoiseModel;
 use crate::statistics::chi_squared_tail;
 
 /// A level of probability: what is less probable by chance is not taken for chance.
@@ -173,10 +173,10 @@ impl<P, Q, R, S> Findings<P, Q, R, S> {
 }
 
 /// Probability of a chi^2 as large by chance. Unknown noise is at most as strong as that by which chi^2 is `of_strongest_noise`,
-/// but for a chance of [`EXCLUDED`]: the largest probability over all noise that is not excluded, plus that chance (Berger and Boos 1994).
+/// but for a chance of [`NoiseModel::EXCLUDED`]: the largest probability over all noise that is not excluded, plus that chance (Berger and Boos 1994).
 pub fn chance_of_residuals(chi_squared: f64, degrees_of_freedom: usize, of_strongest_noise: Option<f64>) -> f64 {
     let chance = |chi_squared| chi_squared_tail(chi_squared, degrees_of_freedom);
-    of_strongest_noise.map_or_else(|| chance(chi_squared), |least| (chance(least) + EXCLUDED).min(1.0))
+    of_strongest_noise.map_or_else(|| chance(chi_squared), |least| (chance(least) + NoiseModel::EXCLUDED).min(1.0))
 }
 
 #[cfg(test)]

@@ -111,7 +111,7 @@ impl NoHistory {
         }
     }
 
-    /// Refuses calibrations that are not all of one unit.
+    /// Of calibrations that are not all of one unit.
     pub(super) fn of_units(units: &[Vec<Calibrated>]) -> Self {
         let named = |unit: &Vec<Calibrated>| format!("model {:?} serial {:?}", unit[0].unit_model, unit[0].unit_serial);
         Self::Units(format!("{} units: {}", units.len(), listed(units.iter().map(named))))

@@ -63,7 +63,7 @@ impl TumbleRequest {
     /// The largest distance of the proof masses from an axis of rotation [m].
     ///
     /// # Errors
-    /// [`NotThatQuantity`] if it is negative or beyond [`MOST_DISTANT`].
+    /// [`NotThatQuantity`] if it is negative or beyond 10 m.
     pub fn turning_radius(distance: &Quantity) -> Result<f64, NotThatQuantity> {
         distance.within(Dimension::Length, 0.0..=MOST_DISTANT, &format!("a distance of 0 to {MOST_DISTANT} m"))
     }

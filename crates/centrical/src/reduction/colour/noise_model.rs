@@ -18,9 +18,6 @@ use super::markov::{Markov, gain};
 use super::posterior::{Mixture, Power, posterior};
 use crate::reduction::average::{CELLS, PlateauFit, ReducedMounting, Weights};
 
-/// Chance that noise is excluded which is there: a tenth of the level of an objection.
-pub const EXCLUDED: f64 = 1e-5;
-
 /// Noise of a unit, which gives the covariance of a mean.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NoiseModel {
@@ -52,6 +49,9 @@ struct Component {
 }
 
 impl NoiseModel {
+    /// Chance that noise is excluded which is there: a tenth of the level of an objection.
+    pub const EXCLUDED: f64 = 1e-5;
+
     /// Estimates the noise from all plateaus of a session.
     ///
     /// Components are added one by one, the likeliest first, as long as Schwarz's criterion accepts them. By the same criterion the noise is
@@ -262,7 +262,7 @@ impl Along {
         let likeliest = likeliest_components(groups, times, 1.0);
         let powers: Vec<Power> = groups.iter().map(Group::as_power).collect();
         let times = times.to_vec();
-        let Some(posterior) = posterior(&powers, EXCLUDED) else {
+        let Some(posterior) = posterior(&powers, NoiseModel::EXCLUDED) else {
             return Self { components: likeliest, not_excluded: Vec::new(), times };
         };
         let part =
