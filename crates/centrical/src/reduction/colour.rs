@@ -4,17 +4,19 @@ mod alike;
 mod contrasts;
 mod likelihood;
 mod markov;
-mod mean;
 mod noise_model;
 mod posterior;
 mod settling;
 
+use std::f64::consts::TAU;
+
+use nalgebra::{Matrix3, Vector3};
 use rayon::prelude::*;
 
-use super::average::{PlateauFit, ReducedMounting};
+use super::average::{PlateauFit, ReducedMounting, Weights};
 use super::plateau::PlateauMean;
+use crate::statistics::bias_variance;
 use contrasts::fast_cosines;
-use mean::mean;
 pub use noise_model::NoiseModel;
 use settling::TimeStep;
 
@@ -29,4 +31,48 @@ impl ReducedMounting {
         };
         self.plateaus.par_iter().zip(&self.timing.speeds).map(mean).collect()
     }
+}
+
+/// The mean of a plateau whose noise has a scale of its `own` on each axis.
+fn mean(plateau: &PlateauFit, noise: &NoiseModel, step: &TimeStep, own: &Vector3<f64>) -> PlateauMean {
+    let [cosine, sine] = plateau.once_per_revolution;
+    let amplitude = cosine.zip_map(&sine, f64::hypot);
+    let rounding = plateau.digit.zip_zip_map(&noise.quietest(), &amplitude, bias_variance);
+    // The error of the settling's time constant is common to the mounting: it is not a drift of each of its plateaus.
+    let (weights, drift) = plateau.cells.slope(plateau.settling_rate().as_deref());
+    let drift = if plateau.turns() { Vector3::zeros() } else { drift };
+    let (correction, of_correction) = step.effect(plateau);
+    let own = Matrix3::from_diagonal(own);
+    let of_slope = (own * plateau.in_readings(&noise.covariance_by_all(&weights, plateau)) * own).diagonal();
+    let of_noise = own * plateau.in_readings(&noise.covariance(&plateau.cells.mean_weights(), plateau)) * own;
+    PlateauMean {
+        window: plateau.window,
+        samples: plateau.samples,
+        rejected: plateau.rejected,
+        left_out: plateau.left_out,
+        mean: plateau.mean + correction,
+        covariance: of_noise + of_correction + Matrix3::from_diagonal(&rounding),
+        white_variance: plateau.variance / plateau.samples.max(1) as f64,
+        once_per_revolution: plateau.once_per_revolution,
+        once_per_revolution_covariance: covariance_of_harmonic(plateau, noise),
+        drift,
+        measured_speed: None,
+        drift_uncertainty: (of_slope + rounding * largest_gain(&weights).powi(2)).map(f64::sqrt),
+        settling: plateau.settling,
+        arc: plateau.arc(),
+    }
+}
+
+/// What a functional makes of a unit error at most, whose sign may change with time as that of rounding does.
+fn largest_gain(weights: &Weights) -> f64 {
+    weights.by_cell.iter().map(|weight| weight.abs()).sum()
+}
+
+/// Covariance of either quadrature of the once-per-revolution term: `2 S(Omega / 2 pi) / T`, with the two-sided
+/// density `S` of the noise at the frequency of rotation and the time `T` that was sampled; for whole revolutions.
+fn covariance_of_harmonic(plateau: &PlateauFit, noise: &NoiseModel) -> Matrix3<f64> {
+    if plateau.shape.omega == 0.0 {
+        return Matrix3::zeros();
+    }
+    noise.density_on(plateau, plateau.shape.omega / TAU) * (2.0 / (plateau.samples as f64 * plateau.cells.interval))
 }
