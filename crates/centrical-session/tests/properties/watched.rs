@@ -149,3 +149,29 @@ fn a_stopped_look_leaves_the_other_records() {
     let all = watch.look(&GOES_ON).unwrap();
     assert_eq!(all.len(), session.experiment.set_points.len());
 }
+
+/// A newtonometer that shows one number all the time is dead, unless its digit is stated: in a watch as in a calibration.
+#[test]
+fn a_stated_digit_is_known_while_a_session_is_watched() {
+    let record = fs::read_to_string(example("records/m01.csv")).unwrap();
+    let constant = |line: &str| {
+        line.rsplit_once(',').map(|(rest, last)| match last {
+            "f3" => line.to_owned(),
+            _ => format!("{rest},9.81"),
+        })
+    };
+    let record = record.lines().filter_map(constant).collect::<Vec<_>>().join("\n") + "\n";
+    for (stated, plateaus) in [("", None), ("\n[uncertainty]\nresolution = \"1 g\"\n", Some(9))] {
+        let (folder, _) = folder(".csv");
+        OpenOptions::new()
+            .append(true)
+            .open(folder.path().join("experiment.toml"))
+            .unwrap()
+            .write_all(stated.as_bytes())
+            .unwrap();
+        let session = Session::read(folder.path()).unwrap();
+        fs::write(folder.path().join("records/m01.csv"), &record).unwrap();
+        let came = Watch::new(&session, Duration::ZERO).look(&GOES_ON);
+        assert_eq!(came.as_ref().ok().map(Vec::len), plateaus, "{stated:?}: {came:?}");
+    }
+}
