@@ -88,16 +88,12 @@ fn of_records(arguments: &Arguments) -> Result<Outcome, Error> {
         remark_unused_time(request.files.iter().map(PathBuf::as_path));
     }
     let out = arguments.out.as_deref();
-    let claim = out.map(claim_folder).transpose()?;
+    let _claim = out.map(claim_folder).transpose()?;
     arguments.refuse_outputs(request.inputs())?;
     let mut tumble = tumble(&request, out.unwrap_or(Path::new("")), &unwatched)?;
     tumble.result = arguments.documents.in_axes(tumble.result, &request.files[0])?;
-    if let Some(folder) = out {
-        tumble.write(&request, folder)?;
-    }
-    let outcome = arguments.documents.hand_over(&tumble.result, arguments.printing, out, out);
-    drop(claim);
-    outcome
+    out.map_or(Ok(()), |folder| tumble.write(&request, folder))?;
+    arguments.documents.hand_over(&tumble.result, arguments.printing, out, out)
 }
 
 /// By the rests of a session alone.
@@ -105,16 +101,12 @@ fn of_session(arguments: &Arguments, path: &Path) -> Result<Outcome, Error> {
     arguments.refuse_what_a_session_states(path)?;
     let session = Session::read(path)?.off_arm(&arguments.terms)?;
     let out = arguments.out.as_deref();
-    let claim = out.map(claim_folder).transpose()?;
+    let _claim = out.map(claim_folder).transpose()?;
     arguments.refuse_outputs(session.files().into_iter())?;
     let result = calibrate(&session, &[], Method::Exact, &unwatched)?;
     let result = arguments.documents.in_axes(result, path)?;
-    if let Some(folder) = out {
-        result.write(&folder.join(RESULT))?;
-    }
-    let outcome = arguments.documents.hand_over(&result, arguments.printing, out, out);
-    drop(claim);
-    outcome
+    out.map_or(Ok(()), |folder| result.write(&folder.join(RESULT)))?;
+    arguments.documents.hand_over(&result, arguments.printing, out, out)
 }
 
 impl Arguments {
@@ -166,15 +158,9 @@ impl Arguments {
             ("--serial", self.serial.is_some()),
             ("--date", self.date.is_some()),
         ];
-        match given.into_iter().find(|(_, is_given)| *is_given) {
-            Some((option, _)) => Err(Error::content(
-                session,
-                Place::Whole,
-                format!("{option} beside a session"),
-                "the same in its experiment file",
-            )),
-            None => Ok(()),
-        }
+        let Some((option, _)) = given.into_iter().find(|(_, is_given)| *is_given) else { return Ok(()) };
+        let found = format!("{option} beside a session");
+        Err(Error::content(session, Place::Whole, found, "the same in its experiment file"))
     }
 }
 
