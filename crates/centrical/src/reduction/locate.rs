@@ -146,7 +146,7 @@ impl Located {
         }
     }
 
-    /// The same from a counter of revolutions.
+    /// The same from a counter of revolutions, in place of telemetry.
     pub fn time_pulses(&mut self, pulses: &PulseTrain) {
         let offset = self.compare(&pulses.trace());
         if let Some(offset) = offset.filter(|_| self.is_of_the_record()) {
@@ -156,10 +156,11 @@ impl Located {
         }
     }
 
-    /// Compares the clock of a trace of speeds with that of the record.
+    /// Compares the clock of a trace of speeds with that of the record. Readings of another source are given up.
     fn compare(&mut self, trace: &SpeedTrace) -> Option<ClockOffset> {
         let (offset, agreement) = clock::compare(&self.ramps, self.blocks.width, &self.schedule, trace);
         self.timing.agreement = Some(agreement);
+        self.timing.readings.fill(None);
         offset
     }
 

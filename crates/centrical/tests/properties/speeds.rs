@@ -2,7 +2,9 @@
 
 use centrical::ThirdPosition;
 use centrical::plan::{Noise, Prediction, ReadingRange};
-use centrical::reduction::{MeasuredSpeed, PulseTrain, Record, ReducedMounting, ScheduledPlateau, SpeedTrace, Survey};
+use centrical::reduction::{
+    Located, MeasuredSpeed, PulseTrain, Record, ReducedMounting, ScheduledPlateau, SpeedTrace, Survey,
+};
 use centrical::simulate::{Counter, Equipment, Machine, Recorder, Sensor, Simulation, Tachometer};
 use centrical::uncertainty::{Extent, Level, ShownSpeed, StatedSpeeds};
 use centrical::{Calibration, Data, Experiment, MeasurementModel, Observation, PairRelation, SetPoint, Weight};
@@ -48,22 +50,52 @@ fn measured(
     all.filter(|(set, ..)| *set != 0.0).collect()
 }
 
-fn reduced(model: &MeasurementModel, simulation: &Simulation, m: usize, counted: Option<f64>) -> ReducedMounting {
-    let experiment = model.experiment();
-    let mounting = simulation.mounting(m);
-    let record = mounting.records().fold(Record::default(), |mut whole, stretch| {
+/// The record of a mounting, and its plateaus in it.
+fn located(model: &MeasurementModel, simulation: &Simulation, m: usize) -> (Record, Located) {
+    let record = simulation.mounting(m).records().fold(Record::default(), |mut whole, stretch| {
         whole.t.extend(stretch.t);
         whole.f_z.iter_mut().zip(stretch.f_z).for_each(|(column, values)| column.extend(values));
         whole
     });
-    let schedule = ScheduledPlateau::of_mounting(experiment, m);
-    if let Some(per_revolution) = counted {
-        let mut located = Survey::of(record.as_slice()).unwrap().locate(&schedule).unwrap();
-        located.time_pulses(&PulseTrain { t: mounting.pulses(), per_revolution });
-        return located.averaged(record.as_slice()).unwrap();
+    let schedule = ScheduledPlateau::of_mounting(model.experiment(), m);
+    let located = Survey::of(record.as_slice()).unwrap().locate(&schedule).unwrap();
+    (record, located)
+}
+
+fn telemetry_of(simulation: &Simulation, m: usize) -> SpeedTrace {
+    let telemetry = simulation.mounting(m).telemetry();
+    SpeedTrace { t: telemetry.t, omega: telemetry.omega }
+}
+
+fn reduced(model: &MeasurementModel, simulation: &Simulation, m: usize, counted: Option<f64>) -> ReducedMounting {
+    let (record, mut located) = located(model, simulation, m);
+    match counted {
+        Some(per_revolution) => {
+            located.time_pulses(&PulseTrain { t: simulation.mounting(m).pulses(), per_revolution });
+        }
+        None => located.time_telemetry(&telemetry_of(simulation, m)),
     }
-    let telemetry = mounting.telemetry();
-    record.reduce(Some(&SpeedTrace { t: telemetry.t, omega: telemetry.omega }), &schedule).unwrap()
+    located.averaged(record.as_slice()).unwrap()
+}
+
+/// Pulses that are not of the record show no speed, and telemetry beside them does not stand in for them.
+#[test]
+fn pulses_of_another_record_leave_no_speeds() {
+    let model = kozlov(experiment(ThirdPosition::AxisOneUp, PairRelation::Common, &[1.0, 0.5]));
+    let tachometer = Tachometer { noise: 2e-3, measures: true, ..Tachometer::default() };
+    let equipment = equipment(tachometer, Counter::default());
+    let values = Simulation::draw_truth(&model, 1.0, 1);
+    let simulation = Simulation::new(&model, &values, &equipment, 1).unwrap();
+    let (record, mut located) = located(&model, &simulation, 0);
+    let shown = |located: &Located| {
+        let reduced = located.clone().averaged(record.as_slice()).unwrap();
+        reduced.speed_readings().iter().flatten().count()
+    };
+    located.time_telemetry(&telemetry_of(&simulation, 0));
+    assert_eq!(shown(&located), 7);
+    let t = simulation.mounting(0).pulses().iter().map(|t| 3.0 * t).collect();
+    located.time_pulses(&PulseTrain { t, per_revolution: equipment.counter.per_revolution });
+    assert_eq!(shown(&located), 0);
 }
 
 /// Mean square of errors over their stated uncertainty, `beyond` what the scatter shows, and the median uncertainty.
