@@ -110,7 +110,7 @@ impl Charts<'_> {
         Series::line(label, vec![Point::new(1.0, value), Point::new(count, value)])
     }
 
-    /// Those of `values`, of which the first is of session `first`, that give a signal.
+    /// The `values` that give a signal; the first of all belongs to session `first`.
     fn signals(&self, kind: ChartKind, values: &[f64], first: usize, factor: f64) -> Series {
         let of = self.report.signals.iter().filter(|signal| signal.rule.kind() == kind);
         let at = of.filter_map(|signal| Some((signal.session, values.get((signal.session + 1).checked_sub(first)?)?)));

@@ -259,7 +259,7 @@ pub(super) fn is_data(line: &[u8]) -> bool {
     }
 }
 
-/// Whether nothing but delimiters stands in a line.
+/// Whether a line holds delimiters alone.
 fn is_empty_row(line: &[u8]) -> bool {
     line.iter().all(|byte| matches!(byte, b';' | b',' | b'\t' | b' ' | b'"'))
 }

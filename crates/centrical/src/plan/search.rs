@@ -19,7 +19,7 @@ use super::error::PlanError;
 use crate::progress::OnProgress;
 
 impl Candidates {
-    /// The best schedule within `time` [s]. `progress` is called again and again; it changes nothing but whether the search goes on.
+    /// The best schedule within `time` [s]. `progress` is called again and again and can only stop the search.
     ///
     /// # Errors
     /// [`PlanError`] when there is no plan, or the caller stops.

@@ -51,15 +51,12 @@ pub struct ReducedMounting {
 }
 
 impl Located {
-    /// Averages a plateau from the samples of its window, without the `repeated` ones that had the stamp of the one before; samples
-    /// outside the window are ignored.
+    /// Averages a plateau from the samples of its window; others are ignored.
     ///
     /// # Errors
     /// [`ReductionError`] if the samples are not steady, or do not separate the mean from the once-per-revolution term.
-    pub fn average(&self, plateau: usize, samples: RecordSlice, repeated: usize) -> Result<PlateauFit, ReductionError> {
-        let mut averaging = Averaging::new(self, plateau);
-        averaging.add(samples, repeated);
-        averaging.finish(samples)
+    pub fn average(&self, plateau: usize, samples: RecordSlice) -> Result<PlateauFit, ReductionError> {
+        Averaging::new(self, plateau).finish(samples)
     }
 
     /// Averages all plateaus from the record.
@@ -67,7 +64,7 @@ impl Located {
     /// # Errors
     /// As [`Self::average`].
     pub fn averaged(self, record: RecordSlice) -> Result<ReducedMounting, ReductionError> {
-        let average = |plateau| self.average(plateau, record, 0);
+        let average = |plateau| self.average(plateau, record);
         let plateaus = (0..self.windows.len()).map(average).collect::<Result<_, _>>()?;
         Ok(ReducedMounting::new(self, plateaus))
     }

@@ -19,8 +19,8 @@ use crate::progress::{OnProgress, advance};
 pub struct Rests {
     /// Their means, record by record in the order of time.
     pub means: Vec<Vec<PlateauMean>>,
-    /// Variance of the means along the specific force at most, over the one stated, but for a chance of [`NoiseModel::EXCLUDED`]: few rests show the colour of
-    /// their noise poorly.
+    /// Variance of the means along the specific force at most, over the one stated, but for a chance of [`NoiseModel::EXCLUDED`]: few rests
+    /// show the colour of their noise poorly.
     pub noise_at_most: f64,
 }
 
@@ -131,7 +131,7 @@ fn averaged(
     let mut fits = Vec::new();
     for rest in 0..located.windows().len() {
         advance(progress, ())?;
-        match located.average(rest, record.samples, 0) {
+        match located.average(rest, record.samples) {
             Err(beyond @ (ReductionError::Saturated { .. } | ReductionError::Stuck { .. })) => return Err(beyond),
             fit => fits.extend(fit.ok().filter(is_smooth)),
         }

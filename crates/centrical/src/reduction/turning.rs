@@ -135,7 +135,7 @@ pub(super) fn noise_along(
     let noise: Vec<f64> = (0..record.t.len()).map(noise).collect();
     let noise = Record { t: record.t.to_vec(), f_z: [noise.clone(), noise.clone(), noise] };
     let located = Survey::of(noise.as_slice())?.locate_spans(&spans)?;
-    Ok((0..spans.len()).filter_map(|span| located.average(span, noise.as_slice(), 0).ok()).collect())
+    Ok((0..spans.len()).filter_map(|span| located.average(span, noise.as_slice()).ok()).collect())
 }
 
 /// Time of a whole turn at the mean rate [s].

@@ -15,7 +15,7 @@ impl Degrees {
     /// Welch-Satterthwaite: `nu_eff = u_c^4 / sum u_i^4 / nu_i` over independent contributions `u_i` (GUM, G.2b).
     ///
     /// Contributions are pairs of standard uncertainty and degrees of freedom. Valid for one output quantity whose inputs
-    /// are independent and about normal; there is no such number for several parameters jointly.
+    /// are independent and about normal; several parameters jointly have no such number.
     pub fn effective(contributions: &[(f64, Degrees)]) -> Degrees {
         let variance: f64 = contributions.iter().map(|(u, _)| u * u).sum();
         let doubt: f64 = contributions

@@ -340,8 +340,7 @@ fn in_stretches_as_whole() {
         survey.finish();
         let located = survey.locate(&schedule).expect("plateaus are there");
         let windows = located.windows();
-        let average =
-            |k: usize| located.average(k, record.as_slice().between(windows[k]), 0).expect("a steady plateau");
+        let average = |k: usize| located.average(k, record.as_slice().between(windows[k])).expect("a steady plateau");
         let averaged = (0..windows.len()).map(average).collect();
         assert_eq!(ReducedMounting::new(located, averaged).means(&noise), whole.means(&noise), "stretches of {length}");
     }
@@ -638,7 +637,7 @@ fn a_constant_reading_needs_a_stated_resolution() {
     let reduced = |resolution: f64| -> Result<(), ReductionError> {
         let survey = Survey::of(record.as_slice())?.with_resolution(resolution);
         let located = survey.locate(&run.schedule())?;
-        located.average(0, record.as_slice(), 0).map(|_| ())
+        located.average(0, record.as_slice()).map(|_| ())
     };
     assert!(matches!(reduced(0.0), Err(ReductionError::Stuck { index: 0, axis: 2, .. })), "{:?}", reduced(0.0));
     assert_eq!(reduced(1e-2), Ok(()));

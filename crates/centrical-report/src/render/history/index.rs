@@ -8,7 +8,7 @@ use super::frame::{PageKind, linked_serial, page, verdict};
 use crate::number::counted;
 use crate::plot::Escaped;
 use crate::render::frame::Column::{Number, Words};
-use crate::render::frame::sortable;
+use crate::render::frame::{Column, sortable};
 
 /// A model of units in the list of models.
 #[derive(Debug, Clone, PartialEq)]
@@ -46,8 +46,8 @@ pub fn history_index(
     if let Some(file) = due {
         let _ = writeln!(body, "<p><a href=\"{file}\">due dates of all units</a></p>");
     }
-    models_table(&mut body, models);
-    stations_table(&mut body, stations);
+    indexed(&mut body, "Models", &OF_MODELS, models, model_row);
+    indexed(&mut body, "Stations", &OF_STATIONS, stations, station_row);
     body.push_str(
         "<h2>Calibrations</h2>\n\
          <form class=\"filters\" role=\"search\"><label>Serial <input id=\"serial\" type=\"search\"></label>\
@@ -66,23 +66,37 @@ pub fn history_index(
     page("Calibrations", &body)
 }
 
-fn models_table(body: &mut String, models: &[IndexedModel]) {
-    if models.is_empty() {
-        return;
+/// A table of models or stations, if there are any.
+fn indexed<T>(body: &mut String, title: &str, columns: &[Column], list: &[T], row: fn(&mut String, &T)) {
+    if !list.is_empty() {
+        let _ = writeln!(body, "<h2>{title}</h2>");
+        sortable(body, "", columns, |body| list.iter().for_each(|item| row(body, item)));
     }
-    body.push_str("<h2>Models</h2>\n");
-    let columns = [
-        Words("model"),
-        Number("units"),
-        Number("calibrations"),
-        Words("units alike"),
-        Number("least Cpk"),
-        Words("of"),
-        Words("batches that differ"),
-        Words("control charts"),
-    ];
-    sortable(body, "", &columns, |body| models.iter().for_each(|model| model_row(body, model)));
 }
+
+/// Columns of [`model_row`].
+const OF_MODELS: [Column; 8] = [
+    Words("model"),
+    Number("units"),
+    Number("calibrations"),
+    Words("units alike"),
+    Number("least Cpk"),
+    Words("of"),
+    Words("batches that differ"),
+    Words("control charts"),
+];
+
+/// Columns of [`station_row`].
+const OF_STATIONS: [Column; 8] = [
+    Words("station"),
+    Number("calibrations"),
+    Number("units"),
+    Words("first"),
+    Words("last"),
+    Words("machine"),
+    Words("changed"),
+    Words("control charts"),
+];
 
 fn model_row(body: &mut String, IndexedModel { report, has_signals }: &IndexedModel) {
     let capability = report.parameters.iter().filter_map(|p| Some((p.name.as_str(), p.capability.as_ref()?.cpk)));
@@ -106,24 +120,6 @@ fn model_row(body: &mut String, IndexedModel { report, has_signals }: &IndexedMo
         Escaped(&differ.join(", ")),
         signals(*has_signals),
     );
-}
-
-fn stations_table(body: &mut String, stations: &[IndexedStation]) {
-    if stations.is_empty() {
-        return;
-    }
-    body.push_str("<h2>Stations</h2>\n");
-    let columns = [
-        Words("station"),
-        Number("calibrations"),
-        Number("units"),
-        Words("first"),
-        Words("last"),
-        Words("machine"),
-        Words("changed"),
-        Words("control charts"),
-    ];
-    sortable(body, "", &columns, |body| stations.iter().for_each(|station| station_row(body, station)));
 }
 
 fn station_row(body: &mut String, IndexedStation { report, has_signals }: &IndexedStation) {

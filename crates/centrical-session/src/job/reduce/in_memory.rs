@@ -70,7 +70,7 @@ fn reduce_mounting(
     let located = located(session, number, &session.file, &survey, &ShownSpeeds { telemetry, pulses })?;
     let means = (0..located.windows().len()).map(|plateau| {
         advance(progress, 0)?;
-        located.average(plateau, record.as_slice(), 0).map_err(refused)
+        located.average(plateau, record.as_slice()).map_err(refused)
     });
     let means = means.collect::<Result<_, _>>()?;
     let overview = RecordOverview::of(number + 1, &survey.extremes().collect::<Vec<_>>());

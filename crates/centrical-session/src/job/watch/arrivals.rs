@@ -316,9 +316,9 @@ impl<'s> Watch<'s> {
     /// The plateaus that a growing record shows, and how many of them have come to their end.
     fn begun(&self, mounting: usize, record: &Record) -> Result<Option<(ReducedMounting, usize)>, Error> {
         let schedule = ScheduledPlateau::of_mounting(&self.session.experiment, mounting);
-        let speeds = self.shown_speeds(mounting);
+        let (survey, speeds) = (self.survey(record), self.shown_speeds(mounting));
         let reduced = |schedule: &[ScheduledPlateau]| {
-            let mut located = self.survey(record)?.locate(schedule)?;
+            let mut located = survey.as_ref().map_err(Clone::clone)?.locate(schedule)?;
             speeds.time(&mut located);
             located.averaged(record.as_slice())
         };

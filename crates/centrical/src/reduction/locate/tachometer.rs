@@ -153,9 +153,10 @@ impl Fitted {
         // Spikes hide one another in a fit: a few rounds find them all. What a last round leaves is not a spike but a misfit,
         // which the scatter of groups shows.
         for round in 1..=ROUNDS {
-            let equations =
-                (kept.len() > columns.len()).then(|| LeastSquares::of_columns(rows(columns, &kept))).flatten()?;
-            let coefficients = equations.solve(DVector::from_fn(kept.len(), |row, _| values[kept[row]])).x;
+            let design = DMatrix::from_fn(kept.len(), columns.len(), |row, column| columns[column][kept[row]]);
+            let of_kept = |values: &[f64]| DVector::from_fn(kept.len(), |row, _| values[kept[row]]);
+            let equations = (kept.len() > columns.len()).then(|| LeastSquares::of_columns(design.clone())).flatten()?;
+            let coefficients = equations.solve(of_kept(values)).x;
             let residual =
                 |k: &usize| values[*k] - columns.iter().zip(&coefficients).map(|(c, x)| c[*k] * x).sum::<f64>();
             let residuals: Vec<f64> = kept.iter().map(residual).collect();
@@ -165,7 +166,9 @@ impl Fitted {
             let good: Vec<usize> = kept.iter().copied().filter(|k| residual(k).abs() <= limit).collect();
             if good.len() == kept.len() || round == ROUNDS {
                 let (variance, degrees_of_freedom) = scatter(&residuals, columns.len());
-                let further = coefficient_beside(columns, further, &residuals, &kept);
+                let further = of_kept(further);
+                let beside = &further - design * equations.solve(further.clone()).x;
+                let further = coefficient_beside(&beside, columns.len(), &residuals);
                 let gain = equations.standard_uncertainties()[0].powi(2);
                 return Some(Self { value: coefficients[0], gain, deviation, variance, degrees_of_freedom, further });
             }
@@ -184,21 +187,13 @@ impl Fitted {
     }
 }
 
-/// The kept values of some columns.
-fn rows(columns: &[Vec<f64>], kept: &[usize]) -> DMatrix<f64> {
-    DMatrix::from_fn(kept.len(), columns.len(), |row, column| columns[column][kept[row]])
-}
-
-/// Coefficient of a column that is fitted to the residuals of a fit by others, and its standard uncertainty by their scatter about it.
-fn coefficient_beside(columns: &[Vec<f64>], column: &[f64], residuals: &[f64], kept: &[usize]) -> Option<[f64; 2]> {
-    let others = rows(columns, kept);
-    let column = DVector::from_fn(kept.len(), |row, _| column[kept[row]]);
-    let of_others = LeastSquares::of_columns(others.clone())?.solve(column.clone()).x;
-    let beside = column - others * of_others;
+/// Coefficient of a column, which is what other columns leave of it, in the residuals of the fit by these `others`; and its standard
+/// uncertainty by their scatter about it.
+fn coefficient_beside(beside: &DVector<f64>, others: usize, residuals: &[f64]) -> Option<[f64; 2]> {
     let square: f64 = beside.iter().map(|c| c * c).sum();
     let coefficient = beside.iter().zip(residuals).map(|(c, r)| c * r).sum::<f64>() / square;
     let about: Vec<f64> = beside.iter().zip(residuals).map(|(c, r)| r - coefficient * c).collect();
-    let (variance, degrees_of_freedom) = scatter(&about, columns.len() + 1);
+    let (variance, degrees_of_freedom) = scatter(&about, others + 1);
     (degrees_of_freedom > 0 && coefficient.is_finite()).then(|| [coefficient, (variance / square).sqrt()])
 }
 
