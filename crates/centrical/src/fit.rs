@@ -17,14 +17,12 @@
 //!
 //! **Priors** of the model are rows of the design like any other; the fit says what rests on them.
 
-mod assembly;
 mod batch;
 pub(crate) mod calibration;
 mod convergence;
 mod curvature;
 pub(crate) mod data;
 mod departure;
-mod design;
 pub(crate) mod estimates;
 /// The same estimates by a filter over plateaus, with the states that the order of the experiments asks for.
 pub mod filter;

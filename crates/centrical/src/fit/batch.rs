@@ -7,8 +7,7 @@ use std::borrow::Cow;
 use nalgebra::{DMatrix, DVector, Vector3};
 
 use super::curvature;
-use super::data::Data;
-use super::design::Design;
+use super::data::{Data, Design};
 use super::estimates::{Fit, Termination};
 use super::structure::{Hold, Structure};
 use crate::linalg::least_squares::{LeastSquares, Solution};

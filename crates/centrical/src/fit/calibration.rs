@@ -4,13 +4,12 @@ use std::sync::OnceLock;
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::assembly::Assembly;
 use super::batch::{Search, Start};
 use super::data::Data;
 use super::estimates::Fit;
 use super::gain::Gain;
-use super::structure::Structure;
-use crate::model::whitening::total_covariance;
+use super::structure::{Assembly, Structure};
+use crate::model::plateau::total_covariance;
 use crate::model::{FitError, SetPoint};
 use crate::progress::{OnProgress, unwatched};
 

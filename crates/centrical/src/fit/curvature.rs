@@ -15,10 +15,9 @@
 
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
-use super::assembly::Assembly;
 use super::data::Data;
 use super::departure::{missed, whitened};
-use super::structure::{Hold, Structure};
+use super::structure::{Assembly, Hold, Structure};
 use crate::linalg::least_squares::LeastSquares;
 use crate::model::{FitError, Linearisation};
 

@@ -5,7 +5,7 @@ use std::cmp::Ordering;
 use nalgebra::{DMatrix, DVector};
 
 use super::data::Data;
-use crate::model::whitening::Whitener;
+use crate::model::plateau::Whitener;
 use crate::model::{FitError, Linearisation};
 
 /// A model that misses readings by less than this part of a standard uncertainty, all together, is linear.
@@ -27,7 +27,7 @@ pub(super) fn whitened(
 ) -> Result<DMatrix<f64>, FitError> {
     let mut whitened = DMatrix::zeros(3 * linearisations.len(), columns.len());
     for (n, (observation, at)) in data.observations().iter().zip(linearisations).enumerate() {
-        let whitener = Whitener::new(&observation.into(), at)?;
+        let whitener = Whitener::new(observation, at)?;
         for (mut of_all, column) in whitened.column_iter_mut().zip(columns) {
             of_all.fixed_rows_mut::<3>(3 * n).copy_from(&whitener.apply(&column.fixed_rows::<3>(3 * n).into_owned()));
         }

@@ -11,8 +11,7 @@
 use nalgebra::{DVector, Matrix3};
 
 use super::batch::HALVING_LIMIT;
-use super::data::Data;
-use super::design::Design;
+use super::data::{Data, Design};
 use super::filter::innovation::{Innovation, Unexplained};
 use super::global::{Attitude, PlateauEquations};
 use super::linearised::Linearised;

@@ -5,12 +5,11 @@
 
 use nalgebra::{DMatrix, DVector, DVectorView, Vector3};
 
-use super::assembly::Assembly;
 use super::data::Data;
 use super::estimates::Fit;
-use super::structure::{Hold, Structure};
+use super::structure::{Assembly, Hold, Structure};
 use crate::linalg::least_squares::LeastSquares;
-use crate::model::whitening::Whitener;
+use crate::model::plateau::Whitener;
 use crate::model::{FitError, Linearisation};
 
 /// The factored design at the estimate of a fit.
@@ -36,7 +35,7 @@ impl Gain {
         let linearisations = data.linearised(at);
         let design = Assembly::Batch.design(data, at, &linearisations)?;
         let pairs = data.observations().iter().zip(&linearisations);
-        let whiteners = pairs.map(|(o, l)| Whitener::new(&o.into(), l)).collect::<Result<_, _>>()?;
+        let whiteners = pairs.map(|(o, l)| Whitener::new(o, l)).collect::<Result<_, _>>()?;
         let hold = Hold { null: fit.null_directions_held, weak: false };
         let (equations, misfit) = structure.held.equations(&design, &DVector::from_column_slice(at), hold);
         let (parameters, priors) = (data.model().parameters().len(), data.model().priors().len());

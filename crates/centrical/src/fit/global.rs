@@ -8,7 +8,7 @@ use std::collections::HashMap;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::design::Design;
+use super::data::Design;
 use super::filter::Readings;
 use crate::linalg::elimination::{Elimination, Own};
 use crate::linalg::factor::Factor;

@@ -4,7 +4,7 @@ use nalgebra::{DVector, Matrix3, Vector3};
 
 use super::filter::Readings;
 use crate::linalg::factor::Factor;
-use crate::model::whitening::Whitener;
+use crate::model::plateau::Whitener;
 use crate::model::{FitError, Linearisation, MeasurementModel, Observation};
 
 /// Plateaus that read alike, linearised at a point of all unknowns.
@@ -44,7 +44,7 @@ impl Linearised {
     /// # Errors
     /// [`FitError::Covariance`] when its covariance is not positive definite.
     pub fn push(&mut self, observation: &Observation) -> Result<(), FitError> {
-        let whitener = Whitener::new(&observation.into(), &self.at)?;
+        let whitener = Whitener::new(observation, &self.at)?;
         let columns = [0, 1, 2].map(|axis| (axis, whitener.apply(&Vector3::ith(axis, 1.0))));
         self.sum.update(&columns, &whitener.apply(&(observation.mean - self.at.reading)));
         self.observations.push(observation.clone());

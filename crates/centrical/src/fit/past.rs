@@ -15,7 +15,7 @@ use std::sync::Arc;
 
 use nalgebra::{DVector, Vector3};
 
-use super::design::Design;
+use super::data::Design;
 use super::filter::Readings;
 use super::global::{Attitude, Gathered, Global, PlateauEquations};
 use super::linearised::Linearised;

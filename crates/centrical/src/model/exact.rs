@@ -15,8 +15,9 @@ use nalgebra::{Matrix3, Matrix3x2, Vector3};
 use super::effect::Effect;
 use super::experiment::SetPoint;
 use super::frame::{carousel, hat, rotation, rotation_rate};
-use super::measurement::{Linearisation, MeasurementModel};
+use super::measurement::MeasurementModel;
 use super::parameters::OfPosition;
+use super::plateau::Linearisation;
 use super::share::Share;
 
 impl MeasurementModel {

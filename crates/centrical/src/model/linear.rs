@@ -8,8 +8,9 @@ use nalgebra::Vector3;
 
 use super::experiment::SetPoint;
 use super::kind::Kind;
-use super::measurement::{Linearisation, MeasurementModel};
+use super::measurement::MeasurementModel;
 use super::nominal::Nominal;
+use super::plateau::Linearisation;
 use super::share::Share;
 
 impl MeasurementModel {

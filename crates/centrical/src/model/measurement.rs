@@ -1,6 +1,6 @@
 //! The measurement model: an experiment, the unit's error model, and the unknowns that follow from the two.
 
-use nalgebra::{DVector, Matrix3, Vector3};
+use nalgebra::Matrix3;
 
 use super::effect::Effect;
 use super::error_model::ErrorModel;
@@ -33,46 +33,6 @@ pub struct MeasurementModel {
     deviations: Vec<f64>,
     /// Turns of the carousel over which a reading is averaged while spinning.
     pub(super) revolution: Vec<Matrix3<f64>>,
-}
-
-/// Reading of a plateau and its first derivatives at some `X`.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Linearisation {
-    /// Mean reading `f'` [m/s^2].
-    pub reading: Vector3<f64>,
-    /// Change of `f'` by one standard uncertainty of what the plateau was set to [m/s^2]: of its speed,
-    /// `sigma d f' / d ln Omega`; at rest of its angle.
-    pub setting_error: Vector3<f64>,
-    /// Standard uncertainty of the plateau's own rounding [m/s^2].
-    pub rounding: f64,
-    /// Where only gravity shows the attitude: the normal of all readings that a turn of the unit reaches, of length 1. What moves a mean
-    /// across it turns the unknown attitude, and is not an error.
-    pub normal: Option<Vector3<f64>>,
-    /// Non-zero columns of the Jacobian: (index of the parameter, `d f' / d x`), each index once.
-    pub columns: Vec<(usize, Vector3<f64>)>,
-    /// Non-zero changes of `f'` by one standard uncertainty of an influence [m/s^2]: (index of the unknown, change).
-    /// The unknowns of a fit are the parameters, and behind them the influences.
-    pub stated: Vec<(usize, Vector3<f64>)>,
-}
-
-impl Linearisation {
-    /// Non-zero changes of `f'` by the unknowns of a fit: (index of the unknown, change).
-    pub fn by_unknowns(&self) -> impl Iterator<Item = (usize, &Vector3<f64>)> {
-        self.columns.iter().chain(&self.stated).map(|(unknown, change)| (*unknown, change))
-    }
-
-    /// The change of `f'` with the unknowns of a fit, by the linearisation.
-    pub(crate) fn change(&self, dx: &DVector<f64>) -> Vector3<f64> {
-        self.by_unknowns().map(|(unknown, change)| change * dx[unknown]).sum()
-    }
-
-    /// The linearisation at the influences of the unknowns `x` of a fit, which act linearly.
-    pub(crate) fn with_influences(mut self, x: &[f64]) -> Self {
-        for (unknown, change) in &self.stated {
-            self.reading += change * x[*unknown];
-        }
-        self
-    }
 }
 
 impl MeasurementModel {

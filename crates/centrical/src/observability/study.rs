@@ -2,8 +2,8 @@
 
 use nalgebra::DMatrix;
 
+use crate::model::plateau::whitened_rows;
 use crate::model::prior;
-use crate::model::whitening::whitened_rows;
 use crate::model::{FitError, Linearisation, MeasurementModel, Prior, PriorUse, Weight};
 
 use super::combination::Combination;

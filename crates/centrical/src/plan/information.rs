@@ -12,7 +12,7 @@ use super::candidates::{Candidates, Scenario};
 use super::criterion::{Columns, Criterion};
 use super::error::PlanError;
 use crate::linalg::fold::fold;
-use crate::model::whitening::total_covariance;
+use crate::model::plateau::total_covariance;
 use crate::model::{Linearisation, MeasurementModel, NULL_HOLD, SetPoint, Weight};
 
 /// Candidates whose rows are folded in at once: as many as stay in the nearest cache with the triangle.

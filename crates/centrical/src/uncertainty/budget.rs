@@ -8,7 +8,7 @@ use nalgebra::{DMatrix, Vector3};
 
 use super::coverage::Degrees;
 use crate::fit::{Calibration, Fit, Gain};
-use crate::model::whitening::noise_factor;
+use crate::model::plateau::noise_factor;
 use crate::model::{FitError, MeasurementModel, Observation, Source};
 
 /// A parameter is affected by the null space when that leaves more than this part of its variance.
@@ -216,7 +216,7 @@ type Changes = Vec<(usize, Vector3<f64>)>;
 fn noise(gain: &Gain, observations: &[Observation]) -> Result<Changes, FitError> {
     let mut changes = Vec::with_capacity(3 * observations.len());
     for (n, (observation, at)) in observations.iter().zip(gain.linearisations()).enumerate() {
-        let factor = noise_factor(&observation.into(), at)?;
+        let factor = noise_factor(observation, at)?;
         changes.extend(factor.column_iter().map(|column| (n, column.into_owned())));
     }
     Ok(changes)

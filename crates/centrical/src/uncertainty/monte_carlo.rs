@@ -11,7 +11,7 @@ use super::budget::Budget;
 use super::comparison::weighted_square;
 use super::coverage::Degrees;
 use crate::fit::{Calibration, Data, Fit, Structure, Termination};
-use crate::model::whitening::noise_factor;
+use crate::model::plateau::noise_factor;
 use crate::model::{FitError, MeasurementModel, Observation, SetPoint};
 use crate::progress::{OnProgress, advance};
 use crate::statistics::{Random, chi_squared_tail};
@@ -150,7 +150,7 @@ impl<'a> Laboratory<'a> {
         let (budget, fit) = (calibration.budget()?, calibration.fit());
         let determined: Vec<usize> = (0..truth.len()).filter(|&j| fit.value(j).is_some()).collect();
         let pairs = observations.iter().zip(calibration.gain()?.linearisations());
-        let noise_factors = pairs.map(|(o, at)| noise_factor(&o.into(), at)).collect::<Result<_, _>>()?;
+        let noise_factors = pairs.map(|(o, at)| noise_factor(o, at)).collect::<Result<_, _>>()?;
         Ok(Self {
             data,
             truth,

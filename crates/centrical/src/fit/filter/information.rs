@@ -8,8 +8,7 @@
 
 use nalgebra::{DMatrix, DVector, Vector3};
 
-use super::super::data::Data;
-use super::super::design::Design;
+use super::super::data::{Data, Design};
 use super::lifetimes::Lifetimes;
 use super::readings::Readings;
 use crate::linalg::factor::Factor;

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use crate::model::whitening::Whitener;
+use crate::model::plateau::Whitener;
 use crate::model::{FitError, Linearisation, Observation};
 
 /// Three whitened readings of a plateau, linearised about a point of the unknowns: `rows (x - point) = misfit`.
@@ -22,7 +22,7 @@ impl Readings {
     /// # Errors
     /// [`FitError::Covariance`] when the covariance is not positive definite.
     pub fn new(observation: &Observation, linearisation: &Linearisation) -> Result<Self, FitError> {
-        let whitener = Whitener::new(&observation.into(), linearisation)?;
+        let whitener = Whitener::new(observation, linearisation)?;
         Ok(Self {
             columns: linearisation.by_unknowns().map(|(column, d)| (column, whitener.apply(d))).collect(),
             misfit: whitener.apply(&(observation.mean - linearisation.reading)),
