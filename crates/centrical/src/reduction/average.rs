@@ -1,7 +1,6 @@
 //! Second pass: the mean of each plateau from the samples of its window, a part at a time.
 
 mod cells;
-mod plateau_fit;
 mod samples;
 mod saturation;
 mod strips;
@@ -10,13 +9,13 @@ mod stuck;
 use nalgebra::{Matrix3, Vector3};
 
 use super::error::ReductionError;
-use super::locate::{ClockAgreement, ClockOffset, Located, SpeedReading, TURNING, Timing, Window};
-use super::plateau::LeftOut;
+use super::locate::{ClockAgreement, ClockOffset, Located, Shape, SpeedReading, TURNING, Timing, Window};
+use super::plateau::{Arc, LeftOut};
 use super::record::RecordSlice;
 use super::survey::Blocks;
 use super::triangle::Triangle;
+use crate::model::Position;
 pub(super) use cells::{Cells, Weights};
-pub use plateau_fit::PlateauFit;
 pub(super) use samples::CELLS;
 use samples::Samples;
 use saturation::{may_be_piled_up, piled_up};
@@ -39,6 +38,30 @@ pub struct Averaging<'a> {
     last: Option<f64>,
     /// Why the plateau has no average.
     refused: Option<ReductionError>,
+}
+
+/// The fit of one plateau; the cells hold what its covariance needs.
+#[derive(Debug, Clone)]
+pub struct PlateauFit {
+    pub(super) window: [f64; 2],
+    pub(super) samples: usize,
+    pub(super) rejected: usize,
+    pub(super) left_out: LeftOut,
+    pub(super) mean: Vector3<f64>,
+    pub(super) once_per_revolution: [Vector3<f64>; 2],
+    pub(super) shape: Shape,
+    /// Last digit of the readings [m/s^2].
+    pub(super) digit: Vector3<f64>,
+    /// Variance of a sample about the fit [m^2/s^4]; zero where the readings show rounding alone.
+    pub(super) variance: Vector3<f64>,
+    /// Settling at the start of the window [m/s^2].
+    pub(super) settling: Vector3<f64>,
+    /// Coefficients of the Legendre polynomials 1 to 3 where the unit turns [m/s^2].
+    pub(super) turning: [Vector3<f64>; TURNING],
+    /// Residuals and design, summed by cell.
+    pub(super) cells: Cells,
+    /// Takes readings to the axes and the unit in which the noise is alike on all plateaus: the identity on an arm.
+    pub(super) noise_axes: Matrix3<f64>,
 }
 
 /// A mounting with its plateaus located and averaged, before the noise of the session is known.
@@ -190,6 +213,48 @@ impl<'a> Averaging<'a> {
         } else {
             ReductionError::RevolutionAliased { index, omega, interval }
         }
+    }
+}
+
+impl PlateauFit {
+    /// The fit of a rest in a hand or on a soft table, of readings whose white noise is `sample_noise` [m/s^2]: noise in the direction `along`
+    /// of the readings changes the size of the force. What trembles is the attitude: it moves the reading across that direction, and is in
+    /// other axes of the instrument in every attitude. So the noise is alike in axes along and across, and along in units of that
+    /// white noise which falls there, `sum u_i^2 sigma_i^2` for the direction `u`.
+    pub(super) fn of_rest(self, along: &Vector3<f64>, sample_noise: &Vector3<f64>) -> Self {
+        let noise = along.component_mul(sample_noise).norm();
+        let upright = Position::free("", along).p_zy.transpose();
+        let noise_axes = if noise > 0.0 { upright / noise } else { upright };
+        Self { noise_axes, ..self }
+    }
+
+    /// Whether the unit turns slowly.
+    pub(super) fn turns(&self) -> bool {
+        self.shape.turning.is_some()
+    }
+
+    /// How the unit turns: derivatives of the reading by those of the polynomials, over the size of the reading. With the half length `h`, in
+    /// the middle `P_1' = 1/h`, `P_3' = -3/2h`; on average `P_2'' = 3/h^2`, `P_3'' = 0`.
+    pub(super) fn arc(&self) -> Option<Arc> {
+        let half = self.shape.turning?.half;
+        let ([p1, p2, p3], size) = (self.turning, self.mean.norm());
+        Some(Arc { rate: (p1 - p3 * 1.5).norm() / (half * size), bend_z: p2 * (3.0 / (half * half * size)) })
+    }
+
+    /// A covariance in the axes of the noise, as one of readings.
+    pub(super) fn in_readings(&self, covariance: &Matrix3<f64>) -> Matrix3<f64> {
+        // The axes are a rotation and a unit.
+        let unit = self.noise_axes.row(0).norm_squared();
+        let back = self.noise_axes.transpose() / unit;
+        let covariance = back * covariance * back.transpose();
+        // Symmetric to the last digit, as a table of plateaus holds it.
+        (covariance + covariance.transpose()) * 0.5
+    }
+
+    /// Derivative of the settling's law by the logarithm of its time constant, one value a cell.
+    pub(super) fn settling_rate(&self) -> Option<Vec<f64>> {
+        let settling = self.shape.settling?;
+        Some((0..CELLS).map(|cell| settling.rate((cell as f64 + 0.5) * self.cells.width)).collect())
     }
 }
 

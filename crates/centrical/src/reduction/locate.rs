@@ -24,9 +24,8 @@ use super::survey::{Blocks, Survey};
 use crate::statistics::whole;
 pub use clock::{ClockAgreement, ClockOffset, SpeedTrace};
 use hypothesis::Line;
-pub(super) use shape::{Interval, Shape, TURNING};
+pub(super) use shape::{Interval, Shape, TURNING, Window};
 pub use tachometer::{PulseTrain, SpeedReading};
-pub(super) use window::Window;
 
 /// What telemetry or a counter of revolutions says of the plateaus of a record.
 #[derive(Debug, Clone, Default)]

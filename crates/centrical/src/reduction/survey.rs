@@ -2,15 +2,13 @@
 
 mod block;
 mod blocks;
-mod grid;
 
 use nalgebra::Vector3;
 
 use super::error::ReductionError;
 use super::record::{Record, RecordSlice};
-use block::Block;
+use block::{Block, Grid, SAMPLES};
 pub(super) use blocks::Blocks;
-use grid::{Grid, SAMPLES};
 
 /// The blocks of a record, gathered stretch by stretch.
 #[derive(Debug, Clone)]

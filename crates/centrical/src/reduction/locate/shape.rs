@@ -1,4 +1,4 @@
-//! The shape of a plateau's reading in time: the columns of its design.
+//! The part of a record that is averaged, and the shape of its reading in time: the columns of its design.
 
 use pulp::{Simd, WithSimd};
 
@@ -10,6 +10,15 @@ pub(super) const FADED: f64 = 40.0;
 
 /// Terms of a unit that turns, beside the constant.
 pub(in crate::reduction) const TURNING: usize = 3;
+
+/// The part of the record that a mean is taken over.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::reduction) struct Window {
+    /// From, to [s].
+    pub span: [f64; 2],
+    /// The fitted terms.
+    pub shape: Shape,
+}
 
 /// The terms of a plateau: `[cos, sin,] [settling,] 1`, or `P_1, P_2, P_3, 1` of a unit that turns. The constant stands last.
 #[derive(Debug, Clone, Copy)]

@@ -11,7 +11,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::clock::{ClockOffset, SpeedTrace};
 use super::shape::FADED;
-use super::window::Window;
+use super::shape::Window;
 use crate::linalg::least_squares::LeastSquares;
 use crate::statistics::{MAD, median, whole};
 

@@ -13,7 +13,7 @@ use pulp::{Simd, WithSimd};
 use rayon::prelude::*;
 
 use super::block_fit::{BlockFit, Levels, spread};
-use super::shape::{FADED, Settling, Shape};
+use super::shape::{FADED, Settling, Shape, Window};
 use crate::reduction::error::ReductionError;
 use crate::reduction::plateau::ScheduledPlateau;
 use crate::reduction::simd::lanes::{dot, widest};
@@ -27,15 +27,6 @@ pub(super) struct Windows {
     pub plateaus: Vec<Window>,
     /// Time constant of the settling, common to the mounting [s].
     pub settling_time: Option<f64>,
-}
-
-/// The part of the record that a mean is taken over.
-#[derive(Debug, Clone, Copy)]
-pub(in crate::reduction) struct Window {
-    /// From, to [s].
-    pub span: [f64; 2],
-    /// The fitted terms.
-    pub shape: Shape,
 }
 
 /// Finds the windows about the cores.

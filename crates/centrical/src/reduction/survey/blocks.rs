@@ -6,8 +6,7 @@ use std::ops::Range;
 use nalgebra::Vector3;
 use statrs::function::erf::erf;
 
-use super::block::Block;
-use super::grid::{Grid, SAMPLES};
+use super::block::{Block, Grid, SAMPLES};
 use crate::reduction::error::ReductionError;
 use crate::statistics::{median, whole};
 
