@@ -101,14 +101,10 @@ impl Reduced {
     pub fn table(&self, session: &Session) -> Vec<TabledPlateau> {
         let sign = session.experiment.centrifuge.rotation.sign();
         let row = |(plateau, set_point): (&ReducedPlateau, &SetPoint)| TabledPlateau {
-            mounting: set_point.mounting,
             speed: sign * set_point.omega + 0.0,
             speed_uncertainty: set_point.speed_uncertainty,
             angle: set_point.angle,
-            mean: plateau.mean,
-            covariance: plateau.covariance,
-            samples: plateau.samples,
-            bend_z: None,
+            ..plateau.row(set_point.mounting)
         };
         let set_points = self.set_points(session);
         let plateaus = self.plateaus.iter().zip(&set_points);
@@ -190,29 +186,35 @@ impl Reduced {
 
     /// The means as data of a fit, those held out left out.
     pub fn observations(&self) -> Vec<Observation> {
-        let observation = |(set_point, plateau): (usize, &ReducedPlateau)| Observation {
-            set_point,
-            mean: plateau.mean,
-            covariance: plateau.covariance,
-        };
         let fitted = self.plateaus.iter().enumerate().filter(|(set_point, _)| !self.held_out.contains(set_point));
-        fitted.map(observation).collect()
+        fitted.map(|(set_point, plateau)| plateau.observation(set_point)).collect()
     }
 }
 
 /// Rests in attitudes of their own as rows of a table, a mounting each.
 pub(crate) fn rest_rows(rests: &[ReducedPlateau]) -> Vec<TabledPlateau> {
-    let row = |(mounting, plateau): (usize, &ReducedPlateau)| TabledPlateau {
-        mounting,
-        speed: 0.0,
-        speed_uncertainty: None,
-        angle: 0.0,
-        mean: plateau.mean,
-        covariance: plateau.covariance,
-        samples: plateau.samples,
-        bend_z: plateau.arc.map(|arc| arc.bend_z),
-    };
-    rests.iter().enumerate().map(row).collect()
+    rests.iter().enumerate().map(|(mounting, rest)| rest.row(mounting)).collect()
+}
+
+impl ReducedPlateau {
+    /// The mean as data of a fit.
+    pub(crate) fn observation(&self, set_point: usize) -> Observation {
+        Observation { set_point, mean: self.mean, covariance: self.covariance }
+    }
+
+    /// The mean as a row of a table, at rest.
+    fn row(&self, mounting: usize) -> TabledPlateau {
+        TabledPlateau {
+            mounting,
+            speed: 0.0,
+            speed_uncertainty: None,
+            angle: 0.0,
+            mean: self.mean,
+            covariance: self.covariance,
+            samples: self.samples,
+            bend_z: self.arc.map(|arc| arc.bend_z),
+        }
+    }
 }
 
 impl From<PlateauMean> for ReducedPlateau {

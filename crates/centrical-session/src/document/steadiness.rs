@@ -347,12 +347,8 @@ fn place(set_points: &[SetPoint], set_point: usize) -> (usize, usize) {
 fn repeated(calibration: &Calibration, reduced: &Reduced) -> Vec<RepeatedPlateau> {
     let model = calibration.data().model();
     let set_points = &model.experiment().set_points;
-    let plateau = |(set_point, plateau): (usize, &ReducedPlateau)| Observation {
-        set_point,
-        mean: plateau.mean,
-        covariance: plateau.covariance,
-    };
-    let plateaus: Vec<Observation> = reduced.plateaus.iter().enumerate().map(plateau).collect();
+    let plateaus = reduced.plateaus.iter().enumerate();
+    let plateaus: Vec<Observation> = plateaus.map(|(set_point, plateau)| plateau.observation(set_point)).collect();
     let summary = |repeat: Repeat| RepeatedPlateau {
         mounting: place(set_points, repeat.set_points[0]).0,
         indices: repeat.set_points.map(|set_point| place(set_points, set_point).1),

@@ -15,7 +15,7 @@ use std::collections::HashMap;
 use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
 
-use centrical::{Experiment, Rotation, STANDARD_GRAVITY, SetPoint};
+use centrical::{Experiment, Observation, Rotation, STANDARD_GRAVITY, SetPoint};
 use centrical_table::{ColumnName, Extent, Field, Rule, Source, TableLines};
 use nalgebra::{Matrix3, Vector3};
 
@@ -52,6 +52,29 @@ pub struct PlateauTable {
     pub file: Option<PathBuf>,
     /// One row for each of the experiment's set points, in the same order.
     pub rows: Vec<PlateauMean>,
+}
+
+impl PlateauMean {
+    /// The mean as data of a fit, of that set point.
+    pub(crate) fn observation(&self, set_point: usize) -> Observation {
+        Observation { set_point, mean: self.mean, covariance: self.covariance }
+    }
+
+    /// Its row: the numbers of the columns, NaN for an empty field.
+    pub(super) fn numbers(&self, further: Further) -> Vec<f64> {
+        let angle = if self.speed == 0.0 { self.angle } else { f64::NAN };
+        let (c, [m1, m2, m3]) = (&self.covariance, self.mean.into());
+        let number = (self.mounting + 1) as f64;
+        let row =
+            [number, self.speed, angle, m1, m2, m3, c.m11, c.m12, c.m13, c.m22, c.m23, c.m33, self.samples as f64];
+        let [b1, b2, b3] = self.bend_z.unwrap_or_default().into();
+        let more = match further {
+            Further::Nothing => Vec::new(),
+            Further::Speeds => vec![self.speed_uncertainty.unwrap_or(f64::NAN)],
+            Further::Bends => vec![b1, b2, b3],
+        };
+        [row.to_vec(), more].concat()
+    }
 }
 
 impl PlateauTable {
@@ -146,7 +169,7 @@ impl PlateauTable {
 }
 
 /// The columns and what each holds.
-pub(super) const COLUMNS: [(&str, &str); 13] = [
+const COLUMNS: [(&str, &str); 13] = [
     ("mounting", "the number of a mounting"),
     ("speed", "a speed in rad/s"),
     ("angle", "an angle in rad"),
@@ -163,10 +186,10 @@ pub(super) const COLUMNS: [(&str, &str); 13] = [
 ];
 
 /// The further column of a table whose speeds are measured.
-pub(super) const SPEED_UNCERTAINTY: (&str, &str) = ("speed_uncertainty", "a relative standard uncertainty");
+const SPEED_UNCERTAINTY: (&str, &str) = ("speed_uncertainty", "a relative standard uncertainty");
 
 /// The further columns of a table of rests with arcs of slow rotation.
-pub(super) const BEND: [(&str, &str); 3] = [
+const BEND: [(&str, &str); 3] = [
     ("bend_1", "a second derivative of the vertical"),
     ("bend_2", "a second derivative of the vertical"),
     ("bend_3", "a second derivative of the vertical"),
@@ -183,6 +206,21 @@ pub(super) enum Further {
 }
 
 impl Further {
+    /// What these plateaus have.
+    pub fn of(plateaus: &[PlateauMean]) -> Self {
+        let has = |what: fn(&PlateauMean) -> bool| plateaus.iter().any(what);
+        match () {
+            () if has(|p| p.speed_uncertainty.is_some()) => Self::Speeds,
+            () if has(|p| p.bend_z.is_some()) => Self::Bends,
+            () => Self::Nothing,
+        }
+    }
+
+    /// Names of all columns.
+    pub fn names(self) -> Vec<&'static str> {
+        COLUMNS.iter().chain(self.columns()).map(|(name, _)| *name).collect()
+    }
+
     fn columns(self) -> &'static [(&'static str, &'static str)] {
         match self {
             Self::Nothing => &[],
@@ -190,6 +228,11 @@ impl Further {
             Self::Bends => &BEND,
         }
     }
+}
+
+/// Whether the numbers of a column are far below 1.
+pub(super) fn is_small(column: usize) -> bool {
+    (COVARIANCE..SAMPLES).contains(&column) || column > SAMPLES
 }
 
 /// A mean reading is wrong if it is off by this factor of the largest nominal one.
@@ -206,6 +249,12 @@ const MEAN: usize = 3;
 
 /// Place of `angle` among the columns.
 const ANGLE: usize = 2;
+
+/// Place of `cov_11` among the columns.
+const COVARIANCE: usize = 6;
+
+/// Place of `samples` among the columns, the last that every table has.
+const SAMPLES: usize = COLUMNS.len() - 1;
 
 /// Reads the table of `file` for a session of that many mountings.
 ///
@@ -327,11 +376,11 @@ fn plateau(file: &Path, number: u64, row: &[f64; COLUMNS.len()], mountings: usiz
     }
     let covariance = Matrix3::new(c11, c12, c13, c12, c22, c23, c13, c23, c33);
     if covariance.cholesky().is_none() {
-        return Err(wrong(6, "a positive definite covariance".to_owned()));
+        return Err(wrong(COVARIANCE, "a positive definite covariance".to_owned()));
     }
     // 2^53: up to here every count is a number of its own.
     if samples.fract() != 0.0 || !(1.0..=9_007_199_254_740_992.0).contains(&samples) {
-        return Err(wrong(12, "how many samples were averaged".to_owned()));
+        return Err(wrong(SAMPLES, "how many samples were averaged".to_owned()));
     }
     #[expect(
         clippy::cast_possible_truncation,

@@ -1,11 +1,10 @@
 //! Tables of plateaus already averaged, as they are written.
 
-use std::fmt::Write as _;
 use std::path::Path;
 
 use centrical_table::{parquet_bytes, write_whole};
 
-use super::plateaus::{BEND, COLUMNS, PlateauMean, SPEED_UNCERTAINTY};
+use super::plateaus::{Further, PlateauMean, is_small};
 use crate::error::Error;
 
 /// Writes a table of plateaus, every number to its last digit; the file appears whole or not at all.
@@ -13,59 +12,25 @@ use crate::error::Error;
 /// # Errors
 /// If the file can not be written.
 pub fn write_plateaus(file: &Path, plateaus: &[PlateauMean]) -> Result<(), Error> {
-    let (is_measured, turns) = (is_measured(plateaus), turns(plateaus));
-    let mut text = COLUMNS.map(|(name, _)| name).join(",");
-    if is_measured {
-        let _ = write!(text, ",{}", SPEED_UNCERTAINTY.0);
-    }
-    if turns {
-        let _ = write!(text, ",{}", BEND.map(|(name, _)| name).join(","));
-    }
-    text.push('\n');
-    for p in plateaus {
-        let angle = if p.speed == 0.0 { p.angle.to_string() } else { String::new() };
-        let c = &p.covariance;
-        let [m1, m2, m3] = p.mean.into();
-        let upper = [c.m11, c.m12, c.m13, c.m22, c.m23, c.m33].map(|v| format!("{v:e}")).join(",");
-        // Writing to a String does not fail.
-        let _ = write!(text, "{},{},{angle},{m1},{m2},{m3},{upper},{}", p.mounting + 1, p.speed, p.samples);
-        if is_measured {
-            let _ = write!(text, ",{}", p.speed_uncertainty.map_or_else(String::new, |u| format!("{u:e}")));
-        }
-        if turns {
-            let [b1, b2, b3] = p.bend_z.unwrap_or_default().into();
-            let _ = write!(text, ",{b1:e},{b2:e},{b3:e}");
-        }
+    let further = Further::of(plateaus);
+    let mut text = further.names().join(",") + "\n";
+    for plateau in plateaus {
+        let cells = plateau.numbers(further).into_iter().enumerate().map(|(k, number)| match k {
+            _ if number.is_nan() => String::new(),
+            k if is_small(k) => format!("{number:e}"),
+            _ => number.to_string(),
+        });
+        text += &cells.collect::<Vec<_>>().join(",");
         text.push('\n');
     }
     Ok(write_whole(file, text.as_bytes())?)
 }
 
-/// Whether a speed was measured, so that the table has a column for its uncertainty.
-fn is_measured(plateaus: &[PlateauMean]) -> bool {
-    plateaus.iter().any(|p| p.speed_uncertainty.is_some())
-}
-
-/// Whether there are arcs of slow rotation, so that the table has columns for their bend.
-fn turns(plateaus: &[PlateauMean]) -> bool {
-    plateaus.iter().any(|p| p.bend_z.is_some())
-}
-
-/// As [`write_plateaus`], of plateaus on an arm in Parquet.
+/// As [`write_plateaus`], in Parquet.
 pub(crate) fn write_plateaus_parquet(file: &Path, plateaus: &[PlateauMean]) -> Result<(), Error> {
-    let row = |p: &PlateauMean| {
-        let angle = if p.speed == 0.0 { p.angle } else { f64::NAN };
-        let (c, [m1, m2, m3]) = (&p.covariance, p.mean.into());
-        let number = (p.mounting + 1) as f64;
-        [number, p.speed, angle, m1, m2, m3, c.m11, c.m12, c.m13, c.m22, c.m23, c.m33, p.samples as f64]
-    };
-    let rows: Vec<[f64; COLUMNS.len()]> = plateaus.iter().map(row).collect();
-    let mut columns: Vec<Vec<f64>> = (0..COLUMNS.len()).map(|k| rows.iter().map(|row| row[k]).collect()).collect();
-    let mut names = COLUMNS.map(|(name, _)| name).to_vec();
-    if is_measured(plateaus) {
-        names.push(SPEED_UNCERTAINTY.0);
-        columns.push(plateaus.iter().map(|p| p.speed_uncertainty.unwrap_or(f64::NAN)).collect());
-    }
+    let further = Further::of(plateaus);
+    let (names, rows) = (further.names(), plateaus.iter().map(|plateau| plateau.numbers(further)).collect::<Vec<_>>());
+    let columns: Vec<Vec<f64>> = (0..names.len()).map(|k| rows.iter().map(|row| row[k]).collect()).collect();
     let bytes = parquet_bytes(&names, &columns).map_err(|error| Error::writing(file, error))?;
     Ok(write_whole(file, &bytes)?)
 }
@@ -75,7 +40,7 @@ mod tests {
     use centrical_table::Source;
     use nalgebra::{Matrix3, Vector3};
 
-    use super::super::plateaus::{Further, PLATEAUS, plateaus_of, read_plateaus};
+    use super::super::plateaus::{PLATEAUS, plateaus_of, read_plateaus};
     use super::*;
 
     #[test]

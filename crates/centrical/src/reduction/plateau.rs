@@ -4,7 +4,7 @@ use std::ops::AddAssign;
 
 use nalgebra::{Matrix3, Vector3};
 
-use crate::model::Experiment;
+use crate::model::{Experiment, Observation};
 
 /// One plateau of a mounting's schedule.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -54,6 +54,13 @@ pub struct PlateauMean {
     pub measured_speed: Option<f64>,
     /// Remaining settling at the start of the window [m/s^2].
     pub settling: Vector3<f64>,
+}
+
+impl PlateauMean {
+    /// The mean as data of a fit, of that set point.
+    pub fn observation(&self, set_point: usize) -> Observation {
+        Observation { set_point, mean: self.mean, covariance: self.covariance }
+    }
 }
 
 /// An arc of slow rotation.

@@ -95,9 +95,8 @@ fn calibrated(
     covariance: impl Fn(&PlateauMean) -> Matrix3<f64>,
 ) -> Fit {
     let observation = |(set_point, mean): (usize, &PlateauMean)| Observation {
-        set_point,
-        mean: mean.mean,
         covariance: covariance(mean),
+        ..mean.observation(set_point)
     };
     let observations: Vec<Observation> = means.iter().enumerate().map(observation).collect();
     crate::common::exact(model, &observations).expect("the session determines everything")

@@ -576,12 +576,7 @@ fn calibration_means(
         .collect();
     let pooled = NoiseModel::pool(&reduced);
     let means = reduced.iter().flat_map(|mounting| mounting.means(&pooled));
-    let observation = |(set_point, mean): (usize, centrical::reduction::PlateauMean)| Observation {
-        set_point,
-        mean: mean.mean,
-        covariance: mean.covariance,
-    };
-    means.enumerate().map(observation).collect()
+    means.enumerate().map(|(set_point, mean)| mean.observation(set_point)).collect()
 }
 
 /// The mean over the range is the mean over forces drawn by chance, and the worst goal weighs it as stated.

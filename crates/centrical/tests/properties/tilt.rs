@@ -7,7 +7,7 @@ use centrical::ThirdPosition;
 use centrical::reduction::{NoiseModel, PlateauMean, Record, ReducedMounting, ScheduledPlateau};
 use centrical::simulate::{Equipment, Machine, Sensor, Simulation};
 use centrical::uncertainty::{OncePerRevolution, TiltComparison};
-use centrical::{Calibration, Data, MeasurementModel, Observation};
+use centrical::{Calibration, Data, MeasurementModel};
 use nalgebra::Vector3;
 
 use crate::common::{experiment, kozlov};
@@ -44,9 +44,7 @@ fn comparison(tilt: [f64; 2], seed: u64, change: impl Fn(&mut [Vector3<f64>; 2])
     let mut truth = Simulation::draw_truth(&model, 1.0, seed);
     truth[..2].copy_from_slice(&tilt);
     let means = means(&model, &truth, seed);
-    let observation =
-        |(set_point, m): (usize, &PlateauMean)| Observation { set_point, mean: m.mean, covariance: m.covariance };
-    let observations: Vec<Observation> = means.iter().enumerate().map(observation).collect();
+    let observations = means.iter().enumerate().map(|(set_point, mean)| mean.observation(set_point)).collect();
     let data = Data::new(&model, observations).expect("sound plateaus");
     let calibration = Calibration::exact(&data).expect("the session determines everything");
     let spins = |set_point: &usize| !model.experiment().set_points[*set_point].is_rest();

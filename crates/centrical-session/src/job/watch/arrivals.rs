@@ -18,7 +18,7 @@ use super::changed::reads_otherwise;
 use super::growth::Growth;
 use super::rests;
 use crate::error::Error;
-use crate::experiment::{PlateauMean, Session, SpeedSource};
+use crate::experiment::{Session, SpeedSource};
 use crate::job::reduce::{ShownSpeeds, located, refuse_copies};
 
 /// A session folder that is looked into again and again.
@@ -170,12 +170,7 @@ impl<'s> Watch<'s> {
         self.has_rests = true;
         if let Some(table) = &self.session.plateaus {
             let fresh = table.rows.iter().enumerate().skip(self.come);
-            let observation = |(set_point, row): (usize, &PlateauMean)| Observation {
-                set_point,
-                mean: row.mean,
-                covariance: row.covariance,
-            };
-            arrivals.extend(fresh.map(observation));
+            arrivals.extend(fresh.map(|(set_point, row)| row.observation(set_point)));
             self.come = table.rows.len();
         } else {
             self.look_at_finished(stop, &mut arrivals)?;
@@ -385,12 +380,7 @@ impl<'s> Watch<'s> {
         let means = reduced.means(&noise);
         let set_points = self.session.experiment.set_points.iter().enumerate();
         let there = set_points.filter(|(_, set_point)| set_point.mounting == mounting).map(|(index, _)| index);
-        let observation = |(set_point, plateau): (usize, centrical::reduction::PlateauMean)| Observation {
-            set_point,
-            mean: plateau.mean,
-            covariance: plateau.covariance,
-        };
-        there.zip(means).map(observation).collect()
+        there.zip(means).map(|(set_point, plateau)| plateau.observation(set_point)).collect()
     }
 
     fn record_file(&self, mounting: usize) -> &Path {

@@ -40,7 +40,7 @@ pub(super) fn have_come(session: &Session, quiet: Duration) -> bool {
 pub(super) fn observations(session: &Session) -> Vec<Observation> {
     let first = session.experiment.set_points.len() - session.rests().count();
     let rests = (first..).zip(session.rests());
-    rests.map(|(set_point, rest)| Observation { set_point, mean: rest.mean, covariance: rest.covariance }).collect()
+    rests.map(|(set_point, rest)| rest.observation(set_point)).collect()
 }
 
 /// Whether all files of a table are there and have not changed for the time called `quiet`.
