@@ -62,6 +62,12 @@ impl MeasurementModel {
         self.carried_to(Self::new(experiment, self.error_model.clone(), &self.extensions))
     }
 
+    /// The same experiment, extensions and priors with another error model. A prior on a coefficient that it lacks falls away.
+    #[must_use]
+    pub(crate) fn with_error_model(&self, error_model: ErrorModel) -> Self {
+        self.carried_to(Self::new(self.experiment.clone(), error_model, &self.extensions))
+    }
+
     /// The model with what the laboratory states of the quantities that it takes as exact.
     #[must_use]
     pub fn with_stated(mut self, stated: TypeB) -> Self {

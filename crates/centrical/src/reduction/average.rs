@@ -5,6 +5,7 @@ mod samples;
 mod saturation;
 mod strips;
 mod stuck;
+mod tail;
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -139,7 +140,11 @@ impl<'a> Averaging<'a> {
             let (_, of_all) = strips.solve().ok_or_else(|| self.singular(samples.len()))?;
             fit = self.fit_from(&samples, &mut strips, &of_all);
         }
-        self.fit = Some(fit?);
+        let mut fit = fit?;
+        if strips.keeps_tails(&fit.1) {
+            fit = self.fit_from(&samples, &mut strips, &fit.1)?;
+        }
+        self.fit = Some(fit);
         check_range(&samples, &strips, self.index)?;
         self.left_out += samples.left_out(self.last, samples.len() - strips.good(), strips.stuck_and_unreadable());
         self.last = samples.t.last().copied();

@@ -1,5 +1,5 @@
 use centrical::uncertainty::{Candidate, Selection};
-use centrical::{ErrorModel, Group, MeasurementModel, Monomial, Term, unwatched};
+use centrical::{ErrorModel, Extension, Group, Law, MeasurementModel, Monomial, Term, unwatched};
 use rayon::prelude::*;
 
 use crate::common::{Random, observations, truth};
@@ -82,6 +82,20 @@ fn the_true_model_is_recommended() {
         }
     }
     assert!(best.against.unwrap().probability < 1e-12);
+}
+
+/// An extension that the session states belongs to its model: it is no addition, and the model without it is no candidate.
+#[test]
+fn a_stated_extension_is_in_the_model_as_stated() {
+    let source = source_model();
+    let stretch = Extension::ArmStretch(Law::Speed);
+    let model = MeasurementModel::new(source.experiment().clone(), source.error_model().clone(), &[stretch]);
+    let mut random = Random::new(5);
+    let mut x = truth(&model, 1.0, &mut random);
+    x[model.parameters().find("stretch_speed").unwrap()] = 2e-7;
+    let selection = Selection::beside(&model, &session(&model, &x, &mut random), &unwatched).unwrap();
+    let recommended = &selection.candidates[selection.recommended];
+    assert_eq!((recommended.name.as_str(), recommended.unknowns), ("as stated", model.parameters().len()));
 }
 
 /// A rival whose unknowns the data do not determine fits as well as the model without it, and is not a candidate: a lateral shift of a seat

@@ -24,6 +24,8 @@ pub struct Stream {
     pub shaking: f64,
     /// Speed at which the machine resonates, and the standard deviation of its white noise within 1 rad/s [rad/s], [m/s^2].
     pub resonance: (f64, f64),
+    /// Size of squared white noise at 62.6 rad/s, less its mean, that grows with the square of the speed [m/s^2].
+    pub squared: f64,
     /// Standard deviation of white noise along the force, over the force.
     pub jitter: f64,
     /// Standard deviation and correlation time of the first-order Markov noise [m/s^2], [s].
@@ -66,6 +68,7 @@ impl Default for Stream {
             white: 2e-3,
             shaking: 0.0,
             resonance: (0.0, 0.0),
+            squared: 0.0,
             jitter: 0.0,
             colour: (0.0, 1.0),
             correlation: 0.0,
@@ -160,6 +163,10 @@ impl Stream {
             }
             if self.resonance.1 > 0.0 && (omega - self.resonance.0).abs() < 1.0 {
                 f += Vector3::from_fn(|_, _| self.resonance.1 * random.normal());
+            }
+            if self.squared > 0.0 {
+                let size = self.squared * (omega / 62.6).powi(2);
+                f += Vector3::from_fn(|_, _| size * (random.normal().powi(2) - 1.0));
             }
             if self.jitter > 0.0 {
                 f += force(omega, rate) * (self.jitter * random.normal());

@@ -7,6 +7,7 @@ use std::ops::Range;
 use nalgebra::Vector3;
 
 use super::saturation::standing;
+use super::tail::Side;
 use crate::reduction::error::ReductionError;
 use crate::reduction::locate::{Shape, Window};
 use crate::reduction::plateau::LeftOut;
@@ -128,6 +129,24 @@ impl<'a> Samples<'a> {
         Vector3::from_fn(|axis, _| cut * MAD * median(axis) + self.digit[axis])
     }
 
+    /// The samples on both sides of a fit whose last terms have these coefficients, on an axis: those beyond the limit among `spikes`, the others by
+    /// the shown ones.
+    pub fn sides(&self, coefficients: &[Vector3<f64>], axis: usize, limit: f64, spikes: &[usize]) -> [Side; 2] {
+        let times: Vec<f64> = spikes.iter().map(|i| self.t[*i]).collect();
+        let readings = spikes.iter().map(|i| self.f_z[axis][*i]).collect();
+        let spikes = residuals(&self.window.shape.columns(&times), readings, coefficients, axis);
+        let shown = self.shown.residuals(coefficients, axis);
+        let each = self.len() as f64 / shown.len() as f64;
+        [-1.0, 1.0].map(|sign| {
+            let beyond = |of: &[f64], least: f64| of.iter().filter(|residual| sign * **residual > least).count() as f64;
+            Side {
+                all: each * beyond(&shown, 0.0),
+                beyond_half: each * beyond(&shown, 0.5 * limit),
+                beyond: beyond(&spikes, limit),
+            }
+        })
+    }
+
     /// The rejected samples by kind: `rejected` of the recorded ones, among them the stuck and the unreadable. Samples
     /// missing from the record are counted by the intervals between the recorded ones, from the stamp `before` on.
     pub fn left_out(&self, before: Option<f64>, rejected: usize, (stuck, unreadable): (usize, usize)) -> LeftOut {
@@ -179,12 +198,20 @@ impl Shown {
 
     /// Median size of the residuals on an axis, the last terms having these coefficients.
     fn median_residual(&self, coefficients: &[Vector3<f64>], axis: usize) -> f64 {
-        let columns = &self.columns[self.columns.len() - coefficients.len()..];
-        let mut residuals = self.f_z[axis].clone();
-        let terms = columns.iter().zip(coefficients).map(|(column, b)| (b[axis], column.as_slice()));
-        subtract_all(&mut residuals, terms);
-        median(&mut residuals.into_iter().map(f64::abs).filter(|size| size.is_finite()).collect::<Vec<f64>>())
+        let residuals = self.residuals(coefficients, axis).into_iter();
+        median(&mut residuals.map(f64::abs).filter(|size| size.is_finite()).collect::<Vec<f64>>())
     }
+
+    fn residuals(&self, coefficients: &[Vector3<f64>], axis: usize) -> Vec<f64> {
+        residuals(&self.columns, self.f_z[axis].clone(), coefficients, axis)
+    }
+}
+
+/// What is left of readings on an axis, the last terms having these coefficients.
+fn residuals(columns: &[Vec<f64>], mut f: Vec<f64>, coefficients: &[Vector3<f64>], axis: usize) -> Vec<f64> {
+    let columns = &columns[columns.len() - coefficients.len()..];
+    subtract_all(&mut f, columns.iter().zip(coefficients).map(|(column, b)| (b[axis], column.as_slice())));
+    f
 }
 
 /// A subset of `all` samples: neighbours in each of equal ranges, at a quasi-random place in it, so that nothing periodic

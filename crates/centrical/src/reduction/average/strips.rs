@@ -7,6 +7,7 @@ use pulp::{Simd, WithSimd};
 
 use super::samples::Samples;
 use super::stuck::{longest_run, may_be_longer, stuck_on_any_axis};
+use super::tail::widened;
 use crate::reduction::simd::lanes::{dot, largest, range, subtract, widest};
 use crate::reduction::triangle::{TERMS, Triangle};
 
@@ -22,6 +23,8 @@ pub(super) struct Strips<'a> {
     fitted: Fitted,
     /// The first of this part.
     first: usize,
+    /// Limits over those of the samples: wider for the tail of the noise.
+    wider: Vector3<f64>,
 }
 
 /// Strips whose samples are no longer needed.
@@ -98,7 +101,7 @@ impl<'a> Strips<'a> {
         };
         let first = fitted.each.len();
         fitted.each.extend(samples.cells().enumerate().flat_map(of_cell));
-        let mut strips = Self { samples, stuck: None, fitted, first };
+        let mut strips = Self { samples, stuck: None, fitted, first, wider: Vector3::repeat(1.0) };
         let longest = samples.repeat_rate.map(|rate| longest_run(samples.len(), rate));
         let mut may_be_stuck = false;
         strips.each(|strip, strips, room| {
@@ -126,7 +129,22 @@ impl<'a> Strips<'a> {
     /// Judges the samples by a fit whose last terms have these coefficients; true if the set of good samples changed. With
     /// `once_out`, bad samples stay out.
     pub fn judge(&mut self, coefficients: &[Vector3<f64>], once_out: bool) -> bool {
-        self.judge_within(self.samples.limits(coefficients).into(), coefficients, once_out)
+        let limits = self.samples.limits(coefficients).component_mul(&self.wider);
+        self.judge_within(limits.into(), coefficients, once_out)
+    }
+
+    /// Whether the spikes of a fit with these coefficients are the tail of the noise on some axis. From then on they are good.
+    pub fn keeps_tails(&mut self, coefficients: &[Vector3<f64>]) -> bool {
+        let (spikes, limits) = (self.spikes(), self.samples.limits(coefficients));
+        if spikes.is_empty() {
+            return false;
+        }
+        let wider = |axis: usize| {
+            let sides = self.samples.sides(coefficients, axis, limits[axis], &spikes);
+            sides.into_iter().filter_map(widened).fold(1.0, f64::max)
+        };
+        self.wider = Vector3::from_fn(|axis, _| wider(axis));
+        self.wider.max() > 1.0
     }
 
     /// Takes all samples for good that are readable and not stuck.
@@ -141,8 +159,7 @@ impl<'a> Strips<'a> {
         if 5 * (self.samples.len() - self.good()) < self.samples.len() {
             return false;
         }
-        let bad = self.part().iter().flat_map(|strip| strip.bad.iter().map(|i| strip.range.start + i));
-        let bad: Vec<usize> = bad.collect();
+        let bad: Vec<usize> = self.bad().collect();
         let mut steps: Vec<usize> = bad.windows(2).map(|pair| pair[1] - pair[0]).collect();
         steps.sort_unstable();
         let commonest = steps.chunk_by(usize::eq).max_by_key(|same| same.len());
@@ -177,10 +194,23 @@ impl<'a> Strips<'a> {
 
     /// Numbers of stuck samples, and of unreadable ones among the others.
     pub fn stuck_and_unreadable(&self) -> (usize, usize) {
-        let is_stuck = |i: &usize| self.stuck.as_ref().is_some_and(|stuck| stuck[*i]);
+        let stuck = self.bad().filter(|i| self.is_stuck(*i)).count();
+        (stuck, self.bad().count() - stuck - self.spikes().len())
+    }
+
+    /// The bad samples.
+    fn bad(&self) -> impl Iterator<Item = usize> + '_ {
+        self.part().iter().flat_map(|strip| strip.bad.iter().map(|i| strip.range.start + i))
+    }
+
+    /// Those that are readable and not stuck.
+    fn spikes(&self) -> Vec<usize> {
         let is_readable = |i: &usize| self.samples.f_z.iter().all(|f| f[*i].is_finite());
-        let bad = || self.part().iter().flat_map(|strip| strip.bad.iter().map(|i| strip.range.start + i));
-        (bad().filter(is_stuck).count(), bad().filter(|i| !is_stuck(i) && !is_readable(i)).count())
+        self.bad().filter(|i| !self.is_stuck(*i)).filter(is_readable).collect()
+    }
+
+    fn is_stuck(&self, sample: usize) -> bool {
+        self.stuck.as_ref().is_some_and(|stuck| stuck[sample])
     }
 
     /// The number of good samples with the lowest reading on an axis, or with the highest, whichever is larger.
