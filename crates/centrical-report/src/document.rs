@@ -9,9 +9,7 @@ mod objection;
 mod reading_error;
 mod report;
 mod rests_on;
-mod serial;
 mod switch_on;
-mod symbols;
 mod tables;
 
 pub(crate) use self::certificate::method_text;
@@ -21,10 +19,12 @@ pub use self::content::{
     Align, Attachment, Block, Column, Document, Fact, Layer, Margins, Opening, Picture, Row, Section, Table, TableKind,
     Tone,
 };
-pub(crate) use self::drift::drift_facts;
+pub(crate) use self::drift::{
+    drift_facts, has_rounded_times, interpolated, not_used, plateaus_drift, session_drifts, tilts_agree, unscheduled,
+};
 pub use self::objection::objection;
 pub(crate) use self::objection::rival;
 pub use self::report::report;
 pub(crate) use self::rests_on::{counts_as_exact, presuppositions, rests_on_sentence};
-pub(crate) use self::serial::serial;
 pub(crate) use self::switch_on::switch_on_sentence;
+pub(crate) use self::tables::serial;

@@ -35,6 +35,7 @@ pub use self::calibrate::{terminal_table, verdict_text};
 pub(crate) use self::compare::comparison_screen;
 pub use self::compare::comparison_text;
 pub use self::compensate::compensation_text;
+pub use self::drift::reduction_text;
 pub use self::history::{
     chart_text, finding_mark, history_list_text, station_history_text, unit_history_text, units_history_text,
 };

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use centrical_report::{Language, Screen, counted, unscheduled};
+use centrical_report::reduction_text;
 use centrical_session::{Error, ReductionReport, Session, reduce_without_inputs, write_reduced};
 
 use crate::format::Format;
@@ -33,22 +33,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let (session, reduced) = reduce_without_inputs(&session, &progress::on(&bar))?;
     write_reduced(&session, &reduced, None, arguments.format.into(), &arguments.out, &progress::on(&bar))?;
     bar.finish_and_clear();
-    let samples: u64 = reduced.plateaus.iter().map(|plateau| plateau.samples).sum();
-    let text = || {
-        let mut screen = Screen::default();
-        let [plateaus, samples] = [counted(reduced.plateaus.len(), "plateau"), counted(samples, "sample")];
-        screen.say(0, &format!("{plateaus} of {samples} written to {}", arguments.out.display()));
-        if let Some(interpolated) = reduced.interpolated() {
-            let named = ["f1", "f2", "f3"].iter().zip(interpolated).filter(|(_, count)| *count > 0);
-            let named: Vec<String> = named.map(|(name, count)| format!("{name} {count}")).collect();
-            screen.say(0, &format!("readings interpolated to common stamps: {}", named.join(", ")));
-        }
-        if let Some(named) = unscheduled(reduced.mountings.iter().map(|m| m.unscheduled.as_slice()), Language::English)
-        {
-            screen.say(0, &format!("plateaus that the schedule does not have, not used: {named}"));
-        }
-        screen
-    };
+    let text = || reduction_text(&reduced, &arguments.out);
     arguments.printing.show(text, || ReductionReport::of(&session, &reduced, &arguments.out).to_json())?;
     Ok(Outcome::Done)
 }

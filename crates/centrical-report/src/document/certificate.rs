@@ -12,11 +12,9 @@ use super::drift::drift;
 use super::objection::objection;
 use super::reading_error::{error_note, error_table};
 use super::rests_on::{counts_as_exact, presuppositions};
-use super::serial::serial;
 use super::switch_on::switch_on;
-use super::symbols::nominal_output;
-use super::tables::{of_arm, rows_by_group};
-use crate::evaluation::{UnitStatement, by_group, equations, expanded, symbol};
+use super::tables::{by_group, nominal_output, of_arm, rows_by_group, serial};
+use crate::evaluation::{UnitStatement, equations, expanded, symbol};
 use crate::language::Language;
 
 /// Who issues a certificate, and what they say of the unit.

@@ -1,19 +1,18 @@
 //! The report of a calibration: verdict, session, parameters, budget, figures.
 
+use centrical::Group;
 use centrical_session::{CalibrationResult, UnitHistoryReport, ValiditySummary};
 
 use super::axes::axes;
 use super::conformity::{judged_in_words, rule};
-use super::content::{Align, Block, Document, Margins, Opening, Section, Table, TableKind, Tone};
+use super::content::{Align, Block, Document, Fact, Margins, Opening, Section, Table, TableKind, Tone};
 use super::drift::drift;
 use super::objection::{objection, pattern, rival};
 use super::reading_error::{error_note, error_table, headline_table};
 use super::rests_on::{all_rests_on, rests_on};
-use super::serial::serial;
 use super::switch_on::switch_on;
-use super::symbols::{nominal_output, symbols};
-use super::tables::{budget, of_arm, parameters};
-use crate::evaluation::{UnitStatement, UnitVerdict, by_group, equations};
+use super::tables::{budget, by_group, nominal_output, of_arm, parameters, serial};
+use crate::evaluation::{UnitStatement, UnitVerdict, equations, symbol};
 use crate::figure::{Figure, positions};
 use crate::language::Language;
 use crate::number::grouped;
@@ -156,6 +155,19 @@ fn error_model(result: &CalibrationResult, language: Language) -> Vec<Block> {
     ];
     blocks.extend(nominal_output(result, language));
     blocks
+}
+
+/// Every coefficient of the error model by its group, with what it is.
+fn symbols(result: &CalibrationResult, language: Language) -> Vec<Fact> {
+    let messages = language.messages();
+    let mut groups: Vec<(Group, Vec<String>)> = Vec::new();
+    for parameter in result.model.error_model.iter().filter_map(|term| result.parameter(&term.name)) {
+        match groups.iter_mut().find(|(group, _)| *group == parameter.group) {
+            Some((_, names)) => names.push(symbol(&parameter.name)),
+            None => groups.push((parameter.group, vec![symbol(&parameter.name)])),
+        }
+    }
+    groups.into_iter().map(|(group, names)| (names.join(", "), (messages.words.meaning)(group).to_owned())).collect()
 }
 
 /// Errors of the readings in full.

@@ -1,10 +1,11 @@
 //! What a result rests on: effects whose absence it presupposes.
 
+use centrical::Source;
 use centrical_session::{CalibrationResult, MICRO_G, RestsOn, customary};
 
 use super::content::{Align, Block, Table};
 use super::objection::cause;
-use crate::evaluation::{exact, symbol};
+use crate::evaluation::symbol;
 use crate::language::Language;
 
 /// Effects that a certificate and the first layer of a report name: more than these tell a hurried reader no more.
@@ -43,6 +44,26 @@ pub(crate) fn counts_as_exact(result: &CalibrationResult, language: Language) ->
     let names: Vec<String> =
         exact(result).into_iter().map(|source| (messages.words.source)(source).to_lowercase()).collect();
     if names.is_empty() { messages.nothing_exact.to_owned() } else { names.join(", ") }
+}
+
+/// Quantities that an uncertainty may be stated of, and that this session states none of.
+fn exact(result: &CalibrationResult) -> Vec<Source> {
+    let stated = result.stated_sources();
+    let of_quantity = [
+        Source::Gravity,
+        Source::Latitude,
+        Source::Radius,
+        Source::SpeedScale,
+        Source::RestAngle,
+        Source::ProofMasses,
+        Source::Attitude,
+    ];
+    let is_exact = |source: &Source| {
+        let is_in_model = *source != Source::Latitude || result.model.latitude.is_some();
+        let acts = result.model.has_arm() || *source == Source::Gravity;
+        acts && is_in_model && !stated.contains(source)
+    };
+    of_quantity.into_iter().filter(is_exact).collect()
 }
 
 /// What the stated uncertainties presuppose of the machine, or of the rests; and what they include because residuals do not exclude it.

@@ -1,13 +1,18 @@
-//! Tables of the report.
+//! Tables, and facts, that several documents have.
 
-use centrical_session::{BudgetSource, CalibrationResult, ModelSummary, ParameterEstimate, customary};
+use centrical_session::{CalibrationResult, ModelSummary, OutputSummary, ParameterEstimate, SessionSummary, customary};
 
-use super::content::{Align, Column, Row, Table, TableKind};
-use crate::evaluation::{Expanded, expanded, symbol};
+use super::content::{Align, Block, Column, Row, Table, TableKind};
+use crate::evaluation::{BudgetOf, Expanded, budget_of, expanded, symbol};
 use crate::language::Language;
 
 /// What a source leaves is not shown below this part of the combined uncertainty.
 const NEGLIGIBLE: f64 = 1e-3;
+
+/// The serial number of a unit, or that the session gives none.
+pub(crate) fn serial(session: &SessionSummary, language: Language) -> &str {
+    if session.unit_serial.is_empty() { language.messages().not_given } else { &session.unit_serial }
+}
 
 /// A fact that only an arm has: rests alone leave it empty, and an empty fact is not shown.
 pub(super) fn of_arm(model: &ModelSummary, fact: String) -> String {
@@ -37,6 +42,13 @@ pub(super) fn rows_by_group(result: &CalibrationResult, shown: &[&ParameterEstim
         std::iter::once(Row::Group(name.to_owned())).chain(rows).collect::<Vec<_>>()
     };
     shown.chunk_by(|a, b| a.group == b.group).flat_map(in_group).collect()
+}
+
+/// The parameters by group, groups in the order of their first member.
+pub(super) fn by_group<'p>(parameters: &[&'p ParameterEstimate]) -> Vec<&'p ParameterEstimate> {
+    let mut sorted = parameters.to_vec();
+    sorted.sort_by_key(|parameter| parameters.iter().position(|first| first.group == parameter.group));
+    sorted
 }
 
 /// `axis 1`, `axis 2`, `axis 3`.
@@ -78,25 +90,50 @@ pub(super) fn budget(result: &CalibrationResult, language: Language) -> Option<T
         Column { title: title.to_owned(), share, align }
     };
     let columns = titles.into_iter().enumerate().map(column).collect();
-    let row = |(j, parameter): (usize, &ParameterEstimate)| {
+    let row = |parameter: &ParameterEstimate| {
         let (factor, unit) = customary(&parameter.unit, parameter.group);
         let shown = |value: Option<f64>| value.map_or(String::new(), |value| language.significant(value * factor, 2));
-        let combined = budget.combined.get(j).copied().flatten();
+        let BudgetOf { sources, combined, degrees_of_freedom } = budget_of(result, &parameter.name)?;
         let negligible = NEGLIGIBLE * combined.unwrap_or(0.0);
-        let of_source = |source: &BudgetSource| {
-            let value = source.standard_uncertainty.get(j).copied().flatten();
+        let of_source = |value: Option<f64>| {
             if value.is_some_and(|value| value < negligible) { "–".to_owned() } else { shown(value) }
         };
         let mut cells = vec![symbol(&parameter.name), language.unit(unit)];
-        cells.extend(budget.sources.iter().map(of_source));
+        cells.extend(sources.into_iter().map(of_source));
         if combined.is_some() {
-            let degrees = budget.degrees_of_freedom.get(j).copied().flatten();
-            cells.extend([shown(combined), degrees.map_or("∞".to_owned(), |nu| language.fixed(nu.floor(), 0))]);
+            let degrees = degrees_of_freedom.map_or("∞".to_owned(), |nu| language.fixed(nu.floor(), 0));
+            cells.extend([shown(combined), degrees]);
         } else {
             cells.extend([messages.not_determined.to_owned(), String::new()]);
         }
-        Row::Cells(cells)
+        Some(Row::Cells(cells))
     };
-    let rows = result.parameters.iter().enumerate().map(row).collect();
+    let rows = result.parameters.iter().filter_map(row).collect();
     Some(Table { kind: TableKind::Numbers, columns, rows })
+}
+
+/// The nominal scale and bias of a unit that does not put out an acceleration.
+pub(super) fn nominal_output(result: &CalibrationResult, language: Language) -> Vec<Block> {
+    let messages = language.messages();
+    let Some(OutputSummary { unit, scale, bias }) = result.raw_output() else { return Vec::new() };
+    let unit = language.unit(unit);
+    let row = |name: &str, numbers: &[f64; 3], unit: String| {
+        let numbers = numbers.iter().map(|number| language.number(&number.to_string()));
+        [name.to_owned(), unit].into_iter().chain(numbers).collect::<Vec<_>>()
+    };
+    let per_force = format!("{unit}/({})", language.unit("m/s^2"));
+    let rows = [row(messages.nominal_scale, scale, per_force), row(messages.nominal_bias, bias, unit)];
+    let axes = axis_titles(language);
+    let columns = [
+        ("", 0.26, Align::Left),
+        (messages.unit, 0.2, Align::Left),
+        (&axes[0], 0.18, Align::Right),
+        (&axes[1], 0.18, Align::Right),
+        (&axes[2], 0.18, Align::Right),
+    ];
+    vec![
+        Block::Subheading(messages.nominal_output.to_owned()),
+        Block::paragraph(messages.nominal_output_text),
+        Block::Table(Table::numbers(columns, rows)),
+    ]
 }

@@ -26,17 +26,38 @@ pub(crate) fn expanded_of_normal(standard_uncertainty: f64) -> f64 {
     COVERAGE_FACTOR * standard_uncertainty
 }
 
+/// What the budget of a result says of a parameter, SI.
+pub(crate) struct BudgetOf {
+    /// What each source leaves; `None` of a parameter that is not determined.
+    pub sources: Vec<Option<f64>>,
+    /// All of them together.
+    pub combined: Option<f64>,
+    /// Effective degrees of freedom (Welch-Satterthwaite); `None` if they are infinite.
+    pub degrees_of_freedom: Option<f64>,
+}
+
+/// What the budget says of the parameter of this name; `None` without a budget, or without such a parameter.
+pub(crate) fn budget_of(result: &CalibrationResult, name: &str) -> Option<BudgetOf> {
+    let budget = result.budget.as_ref()?;
+    // A budget has its numbers in the order of the parameters.
+    let place = result.parameters.iter().position(|parameter| parameter.name == name)?;
+    let of = |numbers: &[Option<f64>]| numbers.get(place).copied().flatten();
+    Some(BudgetOf {
+        sources: budget.sources.iter().map(|source| of(&source.standard_uncertainty)).collect(),
+        combined: of(&budget.combined),
+        degrees_of_freedom: of(&budget.degrees_of_freedom),
+    })
+}
+
 /// Expanded uncertainty of a parameter of the result; `None` if it is not determined.
 pub(crate) fn expanded(result: &CalibrationResult, parameter: &ParameterEstimate) -> Option<Expanded> {
-    let place = result.parameters.iter().position(|other| other.name == parameter.name);
-    let degrees = |j: usize| result.budget.as_ref()?.degrees_of_freedom.get(j).copied().flatten();
-    // Cut to a whole number, which a reader finds in the published table (EA-4/02, E.3).
-    let degrees_of_freedom = place.and_then(degrees).map(|nu| nu.floor().max(1.0));
+    let degrees_of_freedom = budget_of(result, &parameter.name).and_then(|of| of.degrees_of_freedom);
     Some(expanded_of(parameter.standard_uncertainty?, degrees_of_freedom))
 }
 
 /// `U = k u` of a quantity with these effective degrees of freedom, infinite if none are given.
 pub(crate) fn expanded_of(standard_uncertainty: f64, degrees_of_freedom: Option<f64>) -> Expanded {
+    // Cut to a whole number, which a reader finds in the published table (EA-4/02, E.3).
     let degrees_of_freedom = degrees_of_freedom.map(|nu| nu.floor().max(1.0));
     let factor =
         degrees_of_freedom.map_or(COVERAGE_FACTOR, |nu| Degrees::Finite(nu).coverage_factor(COVERAGE_PROBABILITY));

@@ -1,12 +1,15 @@
-//! How steady the readings were, as text for the terminal.
+//! How steady the readings were, and what records have beside the samples that are used, as text for the terminal.
+
+use std::path::Path;
 
 use centrical_session::{
-    CalibrationResult, CreepSummary, DisturbedPlateau, DriftSummary, LeftOutSummary, MICRO_G, PlateauDriftVerdict,
-    SessionDriftVerdict, TiltSummary, TiltVerdict,
+    CalibrationResult, CreepSummary, DisturbedPlateau, DriftSummary, MICRO_G, Reduced, SessionDriftVerdict, TiltSummary,
 };
 
 use super::screen::Screen;
-use crate::evaluation::{has_rounded_times, interpolated, not_used, unscheduled};
+use crate::document::{
+    has_rounded_times, interpolated, not_used, plateaus_drift, session_drifts, tilts_agree, unscheduled,
+};
 use crate::language::Language;
 use crate::number::{MINUTE, counted, with_uncertainty};
 
@@ -26,16 +29,8 @@ pub(super) fn drift(screen: &mut Screen, result: &CalibrationResult) {
 
 /// Samples that are not used, by kind, and interpolated readings, if any.
 fn left_out(screen: &mut Screen, result: &CalibrationResult) {
-    let LeftOutSummary { spikes, stuck, missing, repeated } = not_used(result);
-    let messages = Language::English.messages();
-    let kinds = [
-        (messages.spikes, spikes),
-        (messages.missing, missing),
-        (messages.stuck, stuck),
-        (messages.repeated, repeated),
-    ];
-    let named: Vec<String> =
-        kinds.iter().filter(|(_, count)| *count > 0).map(|(kind, count)| format!("{kind} {count}")).collect();
+    let named = not_used(result, Language::English);
+    let named: Vec<String> = named.iter().map(|(kind, count)| format!("{kind} {count}")).collect();
     if !named.is_empty() {
         screen.fact("", &format!("samples not used: {}", named.join(", ")));
     }
@@ -43,26 +38,44 @@ fn left_out(screen: &mut Screen, result: &CalibrationResult) {
         screen
             .fact("", "more samples share a time than are used: the times are rounded; time = { rate = ... } uses all");
     }
-    let named: Vec<String> = interpolated(result).iter().map(|(axis, count)| format!("f{axis} {count}")).collect();
-    if !named.is_empty() {
-        screen.fact("", &format!("readings interpolated to common stamps: {}", named.join(", ")));
-    }
-    if let Some(named) = unscheduled(result.mountings.iter().map(|m| m.unscheduled.as_slice()), Language::English) {
-        screen.fact("", &format!("plateaus that the schedule does not have, not used: {named}"));
+    let interpolated = result.mountings.iter().map(|mounting| mounting.interpolated);
+    for line in not_as_recorded(interpolated, result.mountings.iter().map(|m| m.unscheduled.as_slice())) {
+        screen.fact("", &line);
     }
 }
 
+/// Interpolated readings, and plateaus that the schedule does not have, by mounting: a sentence each, if any.
+fn not_as_recorded<'m>(
+    counts: impl IntoIterator<Item = Option<[u64; 3]>>,
+    windows: impl IntoIterator<Item = &'m [[f64; 2]]>,
+) -> impl Iterator<Item = String> {
+    let named: Vec<String> = interpolated(counts).iter().map(|(axis, count)| format!("f{axis} {count}")).collect();
+    let interpolated =
+        (!named.is_empty()).then(|| format!("readings interpolated to common stamps: {}", named.join(", ")));
+    let unscheduled = unscheduled(windows, Language::English)
+        .map(|named| format!("plateaus that the schedule does not have, not used: {named}"));
+    interpolated.into_iter().chain(unscheduled)
+}
+
+/// A session that was reduced into the folder `out`.
+pub fn reduction_text(reduced: &Reduced, out: &Path) -> Screen {
+    let samples: u64 = reduced.plateaus.iter().map(|plateau| plateau.samples).sum();
+    let [plateaus, samples] = [counted(reduced.plateaus.len(), "plateau"), counted(samples, "sample")];
+    let mut screen = Screen::default();
+    screen.say(0, &format!("{plateaus} of {samples} written to {}", out.display()));
+    let windows = reduced.mountings.iter().map(|mounting| mounting.unscheduled.as_slice());
+    for line in not_as_recorded(reduced.mountings.iter().map(|mounting| mounting.interpolated), windows) {
+        screen.say(0, &line);
+    }
+    screen
+}
+
 fn over_plateaus(screen: &mut Screen, drift: &DriftSummary) {
-    let messages = Language::English.messages();
     let shown: Vec<String> = (drift.slope.iter().zip(&drift.slope_uncertainty))
         .map(|(slope, u)| with_uncertainty(MINUTE * slope / MICRO_G, MINUTE * u / MICRO_G))
         .map(|(slope, u)| format!("{slope} ± {u}"))
         .collect();
-    let verdict = match drift.plateau_verdict() {
-        PlateauDriftVerdict::NotSeen => messages.no_drift,
-        PlateauDriftVerdict::WithinSpeed => messages.plateaus_drift_with_speed,
-        PlateauDriftVerdict::Seen => messages.plateaus_drift,
-    };
+    let verdict = plateaus_drift(drift, Language::English);
     screen.fact(
         "DRIFT",
         &format!(
@@ -96,13 +109,7 @@ fn over_session(screen: &mut Screen, drift: &DriftSummary) {
         format!("f{} {change} ± {u}", trend.axis)
     });
     let trends: Vec<String> = trends.collect();
-    let messages = Language::English.messages();
-    let verdict = match drift.session_verdict() {
-        SessionDriftVerdict::NotSeen => messages.no_drift,
-        SessionDriftVerdict::Unsure => messages.drift_or_chance,
-        SessionDriftVerdict::WithinScatter => messages.within_scatter,
-        SessionDriftVerdict::Seen => messages.session_drifts,
-    };
+    let verdict = session_drifts(drift, Language::English);
     let is_unsure = drift.session_verdict() == SessionDriftVerdict::Unsure;
     let advice = if is_unsure { "; bias_drift under [uncertainty] allows for one" } else { "" };
     screen.fact("", &format!("over the session: {} ug, {verdict}{advice}", trends.join(", ")));
@@ -124,20 +131,11 @@ fn repeats(screen: &mut Screen, drift: &DriftSummary) {
 }
 
 fn tilts(screen: &mut Screen, tilt: &TiltSummary) {
-    let messages = Language::English.messages();
     let shown = |value: f64, u: f64| {
         let (value, u) = with_uncertainty(1e6 * value, 1e6 * u);
         format!("{value} ± {u} urad")
     };
-    let verdict = match tilt.verdict() {
-        TiltVerdict::Agree => messages.tilts_agree.to_owned(),
-        TiltVerdict::Differ => messages.tilts_differ.to_owned(),
-        TiltVerdict::Absent => messages.tilt_absent.to_owned(),
-        TiltVerdict::Reversed => {
-            let as_if = shown(tilt.reversed, tilt.spinning_uncertainty);
-            format!("it turns the other way ({as_if}): the sense of rotation is wrong")
-        }
-    };
+    let verdict = tilts_agree(tilt, shown, Language::English);
     screen.fact(
         "TILT",
         &format!(

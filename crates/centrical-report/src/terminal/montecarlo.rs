@@ -1,14 +1,13 @@
 //! Monte Carlo runs as text for the terminal.
 
 use centrical::Parameters;
-use centrical::uncertainty::MonteCarlo;
+use centrical::uncertainty::{MonteCarlo, WeightedSquare};
 use centrical_session::{MonteCarloCase, customary};
 
 use super::prediction::LEANING;
 use super::screen::Screen;
 use super::symbols::legend;
 use super::table::{Align, Cell, Table};
-use crate::evaluation::{chance_distance, chance_of_coverage, expected_deviation};
 use crate::number::{counted, two_digits, unsigned_zero};
 
 /// For which unit the readings were drawn where that is not the one of the data, and what the runs show beside what was
@@ -80,4 +79,25 @@ fn drawn_unit(parameters: &Parameters, truth: &[f64]) -> Option<&'static str> {
     } else {
         (truth == parameters.typical_alternating()).then_some("A unit of typical errors, signs in turn")
     }
+}
+
+/// Two standard deviations of the part of the runs, in percent, whose intervals cover the truth, if each does with the probability
+/// `coverage`.
+fn chance_of_coverage(coverage: f64, of: &MonteCarlo) -> f64 {
+    let percent = 100.0 * coverage;
+    2.0 * (percent * (100.0 - percent) / runs(of)).sqrt()
+}
+
+/// Standard deviation of a quadratic form that has its chi^2 distribution.
+fn expected_deviation(square: &WeightedSquare) -> f64 {
+    (2.0 * square.degrees_of_freedom as f64).sqrt()
+}
+
+/// Distance from the distribution that as many runs pass by chance once in twenty (Kolmogorov).
+fn chance_distance(of: &MonteCarlo) -> f64 {
+    1.36 / runs(of).sqrt()
+}
+
+fn runs(of: &MonteCarlo) -> f64 {
+    of.runs.max(1) as f64
 }

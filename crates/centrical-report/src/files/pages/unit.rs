@@ -10,7 +10,6 @@ use centrical_session::{
 
 use super::overview::{Overview, charts};
 use super::request::PagesRequest;
-use crate::evaluation::UnitDue;
 use crate::render::{due_comment, history_unit_page, no_unit_history_page};
 
 /// The units that have a page.
@@ -69,7 +68,7 @@ impl UnitPages {
         let on = self.limit.map(|_| Date::today());
         let request = UnitHistoryRequest { limit: self.limit, on, ..UnitHistoryRequest::default() };
         let report = unit_history(calibrations, &[], request);
-        let due = self.limit.map_or_else(String::new, |_| due_comment(UnitDue::of(report.as_ref())));
+        let due = self.limit.map_or_else(String::new, |_| due_comment(report.as_ref()));
         self.shown(calibrations, report.as_ref()).replacen(DOCTYPE, &format!("{DOCTYPE}{due}"), 1)
     }
 

@@ -2,19 +2,65 @@
 
 use std::fmt::Write;
 
-use centrical_session::{Date, MICRO_G};
+use centrical_session::{Date, MICRO_G, UnitHistoryReport};
 
 use super::frame::{linked_serial, opening, page};
 use super::units::ListedUnit;
-use crate::evaluation::UnitDue;
 use crate::number::{counted, two_digits};
 use crate::plot::Escaped;
 use crate::render::frame::{Column, sortable};
 
-/// What is said of a unit, as the comment that its page has behind the document type.
-pub fn due_comment(due: UnitDue) -> String {
-    let (word, day) = due.words();
-    format!("<!-- {word} {} -->\n", day.map_or_else(String::new, |day| day.to_string()))
+/// What the history of a unit says of a limit.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum UnitDue {
+    /// A reading is not within it since that day, or since the last calibration.
+    Overdue(Option<Date>),
+    /// All readings are within it until that day.
+    Due(Date),
+    /// All readings are within it beyond that day.
+    After(Date),
+    /// Some readings are not known.
+    NotKnown,
+}
+
+impl UnitDue {
+    /// What `report` says; not known without a history.
+    fn of(report: Option<&UnitHistoryReport>) -> Self {
+        let Some(report) = report else { return Self::NotKnown };
+        match (report.is_within, &report.due, report.due_after) {
+            (Some(false), due, _) => Self::Overdue(due.as_ref().map(|due| due.date)),
+            (_, Some(due), _) => Self::Due(due.date),
+            (_, None, Some(day)) => Self::After(day),
+            (_, None, None) => Self::NotKnown,
+        }
+    }
+
+    /// Its word, and the day if there is one.
+    fn words(self) -> (&'static str, Option<Date>) {
+        match self {
+            Self::Overdue(day) => ("overdue", day),
+            Self::Due(day) => ("due", Some(day)),
+            Self::After(day) => ("due after", Some(day)),
+            Self::NotKnown => ("not known", None),
+        }
+    }
+
+    /// Of its word, and of the day if there is one; `None` of other words.
+    fn named(word: &str, day: Option<Date>) -> Option<Self> {
+        let with_day = day.into_iter().flat_map(|day| [Self::Due(day), Self::After(day)]);
+        [Self::Overdue(day), Self::NotKnown].into_iter().chain(with_day).find(|due| due.words() == (word, day))
+    }
+
+    /// The comment that says so in a page.
+    fn comment(self) -> String {
+        let (word, day) = self.words();
+        format!("<!-- {word} {} -->\n", day.map_or_else(String::new, |day| day.to_string()))
+    }
+}
+
+/// What the history of a unit says of a limit, as the comment that its page has behind the document type.
+pub fn due_comment(report: Option<&UnitHistoryReport>) -> String {
+    UnitDue::of(report).comment()
 }
 
 /// What is said of a unit, from the beginning of its page; `None` where that has no such comment.
@@ -61,7 +107,7 @@ fn row(body: &mut String, unit: &ListedUnit, due: UnitDue) {
 
 #[cfg(test)]
 mod tests {
-    use super::{UnitDue, due_comment, due_of_page};
+    use super::{UnitDue, due_of_page};
 
     #[test]
     fn what_is_due_is_read_from_the_page_of_a_unit() {
@@ -73,7 +119,7 @@ mod tests {
             UnitDue::After(day),
             UnitDue::NotKnown,
         ] {
-            let page = format!("<!DOCTYPE html>\n<!-- 0123abcd -->\n{}<html>", due_comment(due));
+            let page = format!("<!DOCTYPE html>\n<!-- 0123abcd -->\n{}<html>", due.comment());
             assert_eq!(due_of_page(&page), Some(due));
         }
         assert_eq!(due_of_page("<!DOCTYPE html>\n<!-- 0123abcd -->\n<html>"), None);

@@ -1,7 +1,7 @@
-//! The units in which a noise analysis is shown.
+//! The units in which noise, and the criterion of a plan, are shown.
 
 use centrical::stability::{Estimator, NoiseTerm};
-use centrical_session::{MICRO_G, ReadingNoise, Unit};
+use centrical_session::{CriterionName, MICRO_G, PlanReport, ReadingNoise, Unit};
 
 /// How the numbers of one column are shown.
 pub(crate) struct Shown {
@@ -49,4 +49,12 @@ impl Shown {
 
 fn is_acceleration(reading: &ReadingNoise) -> bool {
     Unit::parse(&reading.unit) == Ok(Unit::ACCELERATION)
+}
+
+/// Size of the unit [unit of the criterion], and its name; none of a number without a unit.
+pub(crate) fn criterion_unit(report: &PlanReport) -> (f64, Option<&'static str>) {
+    match report.criterion {
+        CriterionName::I => (MICRO_G, Some("ug")),
+        CriterionName::A | CriterionName::D | CriterionName::Worst => (1.0, None),
+    }
 }
