@@ -1,18 +1,19 @@
 //! The server: it listens, holds every request to its limits, and sends what a site answers.
 
-mod address;
 mod events;
 mod guard;
 mod metrics;
 mod response;
 
 use std::convert::Infallible;
-use std::net::TcpListener;
+use std::io::ErrorKind;
+use std::net::{TcpListener, ToSocketAddrs};
+use std::path::Path;
 use std::sync::Arc;
 use std::thread;
 use std::time::Duration;
 
-use centrical_session::Error;
+use centrical_session::{Error, Place};
 use hyper::body::Incoming;
 use hyper::server::conn::http1;
 use hyper::service::service_fn;
@@ -22,7 +23,6 @@ use tokio::runtime::Builder;
 use tokio::sync::{Semaphore, oneshot};
 use tokio::time::timeout;
 
-use self::address::bound;
 use self::events::Events;
 use self::guard::Guard;
 use self::metrics::Metrics;
@@ -179,5 +179,24 @@ async fn accept<S: Site>(listener: tokio::net::TcpListener, host: Arc<Host<S>>) 
 }
 
 fn failed(address: &str, error: &std::io::Error) -> Error {
-    address::refused(address, &error.to_string(), "an address of this machine")
+    unusable(address, &error.to_string(), "an address of this machine")
+}
+
+/// Listens at `address`.
+fn bound(address: &str) -> Result<TcpListener, Error> {
+    let expected = "an address and a port of this machine, such as 127.0.0.1:8080";
+    let refused = |found: &str, expected: &str| unusable(address, found, expected);
+    let mut addresses = address.to_socket_addrs().map_err(|_| refused("no address with a port", expected))?;
+    let first = addresses.next().ok_or_else(|| refused("no address with a port", expected))?;
+    TcpListener::bind(first).map_err(|error| match error.kind() {
+        ErrorKind::AddrInUse => refused("a port in use by another program", "a free port, or port 0 for any"),
+        ErrorKind::PermissionDenied => refused("a port that only the administrator may open", "a port of 1024 or more"),
+        _ => refused(&error.to_string(), expected),
+    })
+}
+
+/// The error of an address, with what was found and what was expected of it.
+fn unusable(address: &str, found: &str, expected: &str) -> Error {
+    let place = format!("--serve {address}");
+    Error::content(Path::new(&place), Place::Whole, found, expected)
 }
