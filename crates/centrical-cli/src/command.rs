@@ -5,7 +5,6 @@ pub mod calibrate;
 pub mod compare;
 pub mod compensate;
 pub mod completions;
-mod hand_over;
 pub mod history;
 pub mod init;
 pub mod man;

@@ -3,7 +3,8 @@
 use std::time::Duration;
 
 use centrical_session::{
-    ColumnName, Dimension, NotThatQuantity, PlanRequest, Quantity, TumbleRequest, WatchRequest, available_time,
+    ColumnName, Dimension, NotThatQuantity, PlanRequest, Quantity, TableFormat, TumbleRequest, WatchRequest,
+    available_time,
 };
 
 /// A column: a number from 1, or a name.
@@ -107,4 +108,21 @@ pub fn target(text: &str) -> Result<(String, f64), String> {
     let (group, value) = text.split_once('=').ok_or_else(wrong)?;
     let value: f64 = value.trim().parse().map_err(|_| wrong())?;
     if value > 0.0 { Ok((group.trim().to_owned(), value)) } else { Err(wrong()) }
+}
+
+/// The format of tables that are written.
+#[derive(Debug, Clone, Copy, Default, clap::ValueEnum)]
+pub enum Format {
+    #[default]
+    Csv,
+    Parquet,
+}
+
+impl From<Format> for TableFormat {
+    fn from(format: Format) -> Self {
+        match format {
+            Format::Csv => Self::Csv,
+            Format::Parquet => Self::Parquet,
+        }
+    }
 }

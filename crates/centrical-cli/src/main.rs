@@ -4,13 +4,10 @@
 
 mod alarm;
 mod command;
-mod format;
 mod given;
 mod help;
 mod interruption;
-mod outcome;
 mod output;
-mod printing;
 mod progress;
 #[cfg(feature = "serve")]
 mod serving;
@@ -21,8 +18,7 @@ use std::process::ExitCode;
 use centrical_session::Error;
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 
-use outcome::Outcome;
-use output::{say, written};
+use output::{Outcome, say, written};
 
 /// Calibrate newtonometer (accelerometer) triads on a precision centrifuge.
 #[derive(Debug, Parser)]

@@ -1,4 +1,5 @@
-//! The one way to the terminal: what cannot be written is an error, and what comes from files cannot command the terminal.
+//! The one way to the terminal: what cannot be written is an error, and what comes from files cannot command the terminal. Beside it how
+//! a command prints, and how it ends.
 
 use std::env;
 use std::io::{self, ErrorKind, Write};
@@ -14,6 +15,62 @@ const USUAL: (u16, u16) = (24, 80);
 
 /// Widest lines where nobody states a width: longer ones are hard to read.
 const WIDEST: u16 = 120;
+
+/// How a command ended that could do its work.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Outcome {
+    /// Done.
+    Done,
+    /// Done, but the result is not acceptable; it was said why.
+    NotAcceptable,
+    /// Done, but some of many failed; it was said which.
+    SomeFailed,
+}
+
+impl Outcome {
+    /// The worst of many.
+    pub fn of_series(failed: usize, not_acceptable: usize) -> Self {
+        match (failed, not_acceptable) {
+            (0, 0) => Self::Done,
+            (0, _) => Self::NotAcceptable,
+            _ => Self::SomeFailed,
+        }
+    }
+
+    /// Done, and acceptable or not.
+    pub fn acceptable(is_acceptable: bool) -> Self {
+        if is_acceptable { Self::Done } else { Self::NotAcceptable }
+    }
+}
+
+/// How a command prints.
+#[derive(Debug, Clone, Copy, clap::Args)]
+pub struct Printing {
+    /// Print a JSON document instead of text; docs/json.md describes it
+    #[arg(short, long)]
+    pub json: bool,
+    /// Print only what was asked for, without progress; messages of errors and the exit code stay
+    #[arg(short, long)]
+    pub quiet: bool,
+}
+
+impl Printing {
+    /// Prints the JSON document if it was asked for, and the text unless the command is to be quiet.
+    ///
+    /// # Errors
+    /// [`Error`] when the document cannot be made or standard output does not take it.
+    pub fn show(
+        self,
+        text: impl FnOnce() -> Screen,
+        json: impl FnOnce() -> Result<String, Error>,
+    ) -> Result<(), Error> {
+        match (self.json, self.quiet) {
+            (true, _) => print(&json()?),
+            (false, false) => show(&text()),
+            (false, true) => Ok(()),
+        }
+    }
+}
 
 /// Shows a text in the width of the terminal, verdicts in colour where it has any.
 ///

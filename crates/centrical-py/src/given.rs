@@ -1,12 +1,12 @@
 //! A session or a record as Python gives it: by a path, or in memory.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-use centrical_report::document_files;
-use centrical_session::{Bytes, Error, Folder, MountingFiles, Place, Session, refuse_inputs};
+use centrical_session::{Bytes, Error, Folder, MountingFiles, Place, Session};
 use pyo3::prelude::*;
 use pyo3::pybacked::PyBackedBytes;
 
+use crate::progress::Work;
 use crate::result::CalibrationResult;
 
 /// The name of a file that is in memory, and its bytes.
@@ -63,6 +63,16 @@ impl GivenSession {
         }
         Ok(session)
     }
+
+    /// Reads the session for a job that reads its records twice.
+    ///
+    /// # Errors
+    /// As [`Session::read`].
+    pub fn read_for(self, work: &Work) -> Result<Session, Error> {
+        let session = self.read()?;
+        work.expect(2 * session.record_bytes());
+        Ok(session)
+    }
 }
 
 /// A file of readings.
@@ -103,9 +113,4 @@ pub enum GivenResult {
     Read(Py<CalibrationResult>),
     /// A file or a folder.
     Path(PathBuf),
-}
-
-/// Refuses a result and its documents in a folder over what is read.
-pub fn refuse_outputs(folder: &Path, inputs: &[&Path]) -> Result<(), Error> {
-    Ok(refuse_inputs(&[vec![folder.join("result.json")], document_files(folder)].concat(), inputs)?)
 }

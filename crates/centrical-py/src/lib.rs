@@ -12,7 +12,6 @@
 
 mod arrays;
 mod compensation;
-mod drawing;
 mod failure;
 mod given;
 mod jobs;
@@ -32,15 +31,7 @@ pub mod _native {
     #[allow(non_upper_case_globals, reason = "Python's name")]
     pub const __version__: &str = env!("CARGO_PKG_VERSION");
     #[pymodule_export]
-    pub use crate::drawing::draw_curves;
-    #[pymodule_export]
-    pub use crate::jobs::assess::assess;
-    #[pymodule_export]
-    pub use crate::jobs::calibrate::calibrate;
-    #[pymodule_export]
-    pub use crate::jobs::compare::compare;
-    #[pymodule_export]
-    pub use crate::jobs::compensate::compensate;
+    pub use crate::jobs::calibrate::{assess, calibrate, compare, models, montecarlo, series};
     #[pymodule_export]
     pub use crate::jobs::history::{
         add_failure, add_to_store, history_chart, history_list, history_pages, history_station, history_unit,
@@ -49,27 +40,11 @@ pub mod _native {
     #[pymodule_export]
     pub use crate::jobs::in_memory::{calibrate_arrays, plateau_columns};
     #[pymodule_export]
-    pub use crate::jobs::init::init;
+    pub use crate::jobs::measure::{noise, noise_of_session, reduce};
     #[pymodule_export]
-    pub use crate::jobs::models::models;
+    pub use crate::jobs::prepare::{init, observe, plan, schema, simulate};
     #[pymodule_export]
-    pub use crate::jobs::montecarlo::montecarlo;
-    #[pymodule_export]
-    pub use crate::jobs::noise::{noise, noise_of_session};
-    #[pymodule_export]
-    pub use crate::jobs::observe::observe;
-    #[pymodule_export]
-    pub use crate::jobs::plan::plan;
-    #[pymodule_export]
-    pub use crate::jobs::reduce::reduce;
-    #[pymodule_export]
-    pub use crate::jobs::report::report;
-    #[pymodule_export]
-    pub use crate::jobs::schema::schema;
-    #[pymodule_export]
-    pub use crate::jobs::series::series;
-    #[pymodule_export]
-    pub use crate::jobs::simulate::simulate;
+    pub use crate::jobs::report::{compensate, draw_curves, report};
     #[pymodule_export]
     pub use crate::jobs::tumble::tumble;
     #[pymodule_export]

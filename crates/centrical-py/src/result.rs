@@ -4,9 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
 use centrical::uncertainty::{Compensated, ModelInAxes};
-use centrical_report::{
-    Emphasis, Language, Screen, UnitStatement, figures, objection, terminal_table, unit_text, verdict_text,
-};
+use centrical_report::{Language, UnitStatement, figures, objection, result_text};
 use centrical_session::{self as session, Axes, Error, ObjectionName, OutputSummary};
 use nalgebra::Vector3;
 use numpy::{PyArray1, PyArray2, PyUntypedArrayMethods};
@@ -135,13 +133,8 @@ impl CalibrationResult {
     /// The verdict and the tables of the terminal, in lines of `width` characters.
     fn text(&self, width: usize) -> PyResult<String> {
         guarded(|| {
-            let mut screen = verdict_text(&self.result.objections(), self.result.is_checked());
-            if let Some(unit) = &self.unit {
-                screen.add(unit_text(unit));
-            }
-            screen.gap();
-            screen.add(terminal_table(&self.result));
-            Ok(lines(&screen, width))
+            let screen = result_text(&self.result, self.unit.as_ref(), None);
+            Ok(session::harmless(&screen.text(width, usize::MAX)).into_owned())
         })
     }
 
@@ -326,11 +319,4 @@ impl Uncertain {
         };
         covariance.map_or([f64::NAN; 3], |covariance| covariance.diagonal().map(|v| v.max(0.0).sqrt()).into())
     }
-}
-
-/// A text for the terminal, its marks in plain words.
-fn lines(screen: &Screen, width: usize) -> String {
-    let plain = |mark: Option<(Emphasis, String)>| mark.map_or_else(String::new, |(_, mark)| mark);
-    let lines = screen.lines(width, usize::MAX).into_iter();
-    lines.map(|line| session::harmless(&format!("{}{}\n", plain(line.mark), line.rest)).into_owned()).collect()
 }

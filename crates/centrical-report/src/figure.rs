@@ -20,7 +20,7 @@ use centrical::Position;
 use centrical_session::CalibrationResult;
 use nalgebra::Matrix3;
 
-pub use self::comparison::{comparison_drawing, comparison_plot};
+pub use self::comparison::comparison_plot;
 pub use self::drawing::Figure;
 pub use self::frontier::frontier_plot;
 pub use self::history::history_figure;

@@ -5,7 +5,7 @@ mod pages;
 mod plots;
 
 pub use self::documents::{
-    DocumentRequest, Documents, document_files, read_issuer, write_all_documents, write_documents, write_history_plot,
+    DocumentRequest, Documents, read_issuer, refuse_outputs, write_all_documents, write_documents, write_history_plot,
     write_noise,
 };
 pub use self::pages::{PagesRequest, StorePages, write_history_pages};

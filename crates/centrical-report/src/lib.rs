@@ -21,7 +21,7 @@ pub use document::{Block, Document, Row, certificate, objection, report};
 pub use evaluation::UnitStatement;
 pub use figure::{Figure, chart_plots, comparison_plot, figures, frontier_plot, positions_figure, unit_history_plots};
 pub use files::{
-    DocumentRequest, Documents, PagesRequest, StorePages, document_files, read_issuer, write_all_documents,
+    DocumentRequest, Documents, PagesRequest, StorePages, read_issuer, refuse_outputs, write_all_documents,
     write_documents, write_history_pages, write_history_plot, write_noise, write_plots,
 };
 pub use language::Language;
@@ -33,6 +33,6 @@ pub use render::{
 pub use terminal::{
     AlarmKind, Emphasis, Line, Screen, alarm_text, assessment_text, chart_text, comparison_text, compensation_text,
     frozen_text, history_list_text, monte_carlo_text, noise_table, noise_warnings, observation_text, plan_text,
-    reduction_text, selection_table, states_text, station_history_text, terminal_table, unit_history_text, unit_text,
+    reduction_text, result_text, selection_table, states_text, station_history_text, unit_history_text, unit_text,
     units_history_text, verdict_text, watch_table,
 };

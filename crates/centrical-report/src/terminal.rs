@@ -1,10 +1,8 @@
 //! Text for the terminal: a file a command, and what several share.
 
-mod alarm;
 mod assess;
 mod axes;
 mod calibrate;
-mod chance;
 mod compare;
 mod compensate;
 mod drift;
@@ -13,26 +11,17 @@ mod models;
 mod montecarlo;
 mod noise;
 mod observe;
-mod pattern;
+mod phrases;
 mod plan;
 mod prediction;
-mod priors;
 mod rests;
-mod rests_line;
 mod rests_on;
-mod rivals;
 mod screen;
-mod short_list;
-mod symbols;
 mod table;
-mod unit;
+mod verdict;
 mod watch;
-mod wrap;
 
-pub use self::alarm::{AlarmKind, alarm_text, frozen_text};
 pub use self::assess::assessment_text;
-pub use self::calibrate::{terminal_table, verdict_text};
-pub(crate) use self::compare::comparison_screen;
 pub use self::compare::comparison_text;
 pub use self::compensate::compensation_text;
 pub use self::drift::reduction_text;
@@ -47,5 +36,5 @@ pub use self::plan::plan_text;
 pub(crate) use self::screen::Part;
 pub use self::screen::{Emphasis, Line, Screen};
 pub(crate) use self::table::{Align, Table};
-pub use self::unit::unit_text;
-pub use self::watch::{states_text, watch_table};
+pub use self::verdict::{result_text, unit_text, verdict_text};
+pub use self::watch::{AlarmKind, alarm_text, frozen_text, states_text, watch_table};

@@ -6,8 +6,7 @@ use centrical_report::assessment_text;
 use centrical_session::{AssessmentRequest, Error, PredictionReport, STANDARD_GRAVITY, Session, assess};
 
 use crate::given::{above_zero, probability};
-use crate::outcome::Outcome;
-use crate::printing::Printing;
+use crate::output::{Outcome, Printing};
 use crate::progress;
 
 /// Uncertainty budget, validity, residual patterns and prediction of a session's calibration.

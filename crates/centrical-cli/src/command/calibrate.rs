@@ -2,17 +2,14 @@
 
 use std::path::{Path, PathBuf};
 
-use centrical_report::states_text;
+use centrical_report::{refuse_outputs, states_text};
 use centrical_session::{
     CalibrationResult, Error, Method, Place, PlateauName, Session, Store, add_result, calibrate, claim_folder,
     refuse_date,
 };
 
-use super::hand_over::refuse_outputs;
 use super::report::Documents;
-use crate::outcome::Outcome;
-use crate::output::remark;
-use crate::printing::Printing;
+use crate::output::{Outcome, Printing, remark};
 use crate::progress;
 
 /// Calibrate a unit from a session folder: plateau means, fit, result.json.

@@ -2,12 +2,11 @@
 
 use std::path::PathBuf;
 
-use centrical_report::{comparison_plot, comparison_text};
+use centrical_report::{Language, comparison_plot, comparison_text};
 use centrical_session::{CalibrationResult, ComparisonRequest, Error, compare_results, refuse_inputs, write_whole};
 
 use crate::given::above_zero;
-use crate::outcome::Outcome;
-use crate::printing::Printing;
+use crate::output::{Outcome, Printing};
 
 /// Compare calibrations of one unit: differences over their uncertainties, drift, and a joint test.
 ///
@@ -40,8 +39,8 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let report = compare_results(&named, request)?;
     if let Some(file) = &arguments.svg {
         refuse_inputs(std::slice::from_ref(file), &arguments.results)?;
-        write_whole(file, comparison_plot(&report).as_bytes())?;
+        write_whole(file, comparison_plot(&report, Language::English).as_bytes())?;
     }
-    arguments.printing.show(|| comparison_text(&report), || report.to_json())?;
+    arguments.printing.show(|| comparison_text(&report, Language::English), || report.to_json())?;
     Ok(Outcome::acceptable(report.agree))
 }

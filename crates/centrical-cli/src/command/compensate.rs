@@ -6,8 +6,7 @@ use centrical_report::{compensation_text, verdict_text};
 use centrical_session::{Axes, CompensationRequest, Error, compensate, unwatched};
 
 use crate::given::acceleration;
-use crate::outcome::Outcome;
-use crate::printing::Printing;
+use crate::output::{Outcome, Printing};
 
 /// Convert a record of readings to specific force with a calibration result.
 #[derive(Debug, clap::Args)]

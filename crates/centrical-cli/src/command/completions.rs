@@ -1,10 +1,8 @@
 //! `centrical completions SHELL`: what a shell needs to complete commands and options.
 
+use crate::output::{Outcome, print_as_it_is};
 use centrical_session::Error;
 use clap_complete::{Shell, generate};
-
-use crate::outcome::Outcome;
-use crate::output::print_as_it_is;
 
 /// Print the completions of commands and options for a shell; README.md says how to install them.
 #[derive(Debug, clap::Args)]

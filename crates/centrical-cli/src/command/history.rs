@@ -1,18 +1,13 @@
-//! `centrical history ...`: many calibrations, a subcommand a file.
+//! `centrical history ...`: many calibrations.
 
-mod add;
-mod chart;
-mod choice;
-mod list;
-mod page;
-mod station;
-mod unit;
-mod units;
+mod calibrations;
+mod store;
 
 use centrical_session::Error;
 
-pub use self::page::PageOptions;
-use crate::outcome::Outcome;
+#[cfg(feature = "serve")]
+pub use self::store::PageOptions;
+use crate::output::Outcome;
 
 /// Keep calibrations in a store; a unit over the years, units beside each other, a station over its sessions, control charts.
 #[derive(Debug, clap::Args)]
@@ -24,24 +19,24 @@ pub struct Arguments {
 
 #[derive(Debug, clap::Subcommand)]
 enum Command {
-    Add(add::Arguments),
-    List(list::Arguments),
-    Unit(unit::Arguments),
-    Units(units::Arguments),
-    Station(station::Arguments),
-    Chart(chart::Arguments),
-    Page(page::Arguments),
+    Add(store::Add),
+    List(store::List),
+    Unit(calibrations::Unit),
+    Units(calibrations::Units),
+    Station(calibrations::Station),
+    Chart(calibrations::Chart),
+    Page(store::Page),
 }
 
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     match &arguments.command {
-        Command::Add(arguments) => add::run(arguments),
-        Command::List(arguments) => list::run(arguments),
-        Command::Unit(arguments) => unit::run(arguments),
-        Command::Units(arguments) => units::run(arguments),
-        Command::Station(arguments) => station::run(arguments),
-        Command::Chart(arguments) => chart::run(arguments),
-        Command::Page(arguments) => page::run(arguments),
+        Command::Add(arguments) => store::add(arguments),
+        Command::List(arguments) => store::list(arguments),
+        Command::Unit(arguments) => calibrations::unit(arguments),
+        Command::Units(arguments) => calibrations::units(arguments),
+        Command::Station(arguments) => calibrations::station(arguments),
+        Command::Chart(arguments) => calibrations::chart(arguments),
+        Command::Page(arguments) => store::page(arguments),
     }
 }

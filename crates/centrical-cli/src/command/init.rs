@@ -2,13 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::output::{Outcome, Printing, print};
 use centrical_report::Screen;
 use centrical_session::{Draft, Error, InitRequest, init, unwatched, write_whole};
 use clap::ValueEnum;
-
-use crate::outcome::Outcome;
-use crate::output::print;
-use crate::printing::Printing;
 
 /// Draft experiment.toml from records and telemetry: what the files show, what is likely, and what only a person knows.
 #[derive(Debug, clap::Args)]

@@ -2,11 +2,9 @@
 
 use std::path::PathBuf;
 
+use crate::output::{Outcome, print};
 use centrical_session::{Error, create_folder, write_whole};
 use clap_mangen::Man;
-
-use crate::outcome::Outcome;
-use crate::output::print;
 
 /// Write the manual pages: centrical.1, and a page for each command.
 #[derive(Debug, clap::Args)]

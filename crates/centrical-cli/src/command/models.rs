@@ -5,8 +5,7 @@ use std::path::PathBuf;
 use centrical_report::selection_table;
 use centrical_session::{Error, ModelsReport, Session, select_model};
 
-use crate::outcome::Outcome;
-use crate::printing::Printing;
+use crate::output::{Outcome, Printing};
 use crate::progress;
 
 /// Fit rival models to a session and compare them by F test, BIC and hold-out.

@@ -6,8 +6,7 @@ use centrical_report::monte_carlo_text;
 use centrical_session::{Error, MonteCarloCase, MonteCarloRequest, Session, read_plan};
 
 use crate::given::{above_zero, probability};
-use crate::outcome::Outcome;
-use crate::printing::Printing;
+use crate::output::{Outcome, Printing};
 use crate::progress;
 
 /// Repeat the calibration on simulated noise and type B errors, and check the stated uncertainties.

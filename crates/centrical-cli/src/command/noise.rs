@@ -6,9 +6,7 @@ use centrical_report::{Emphasis, Screen, noise_table, noise_warnings, write_nois
 use centrical_session::{ColumnName, Error, Estimator, Folder, NoiseRequest, PlateauName, noise_of, unwatched};
 
 use crate::given::{column_name, sampling_rate, time};
-use crate::outcome::Outcome;
-use crate::output::remark_unused_time;
-use crate::printing::Printing;
+use crate::output::{Outcome, Printing, remark_unused_time};
 
 /// Analyse the noise of a record: deviations of the Allan family with intervals, spectrum, noise terms.
 #[derive(Debug, clap::Args)]

@@ -2,11 +2,9 @@
 
 use std::path::PathBuf;
 
+use crate::output::{Outcome, Printing};
 use centrical_report::observation_text;
 use centrical_session::{Error, ObservabilityReport, subject, unwatched};
-
-use crate::outcome::Outcome;
-use crate::printing::Printing;
 
 /// Analyse observability: rank, undetermined combinations, causes, remedies; before or after the experiment.
 #[derive(Debug, clap::Args)]

@@ -8,8 +8,7 @@ use centrical_session::{
 };
 
 use crate::given::{available, level, probability};
-use crate::outcome::Outcome;
-use crate::printing::Printing;
+use crate::output::{Outcome, Printing};
 
 /// Find the schedule with the smallest uncertainty in the time available, or the shortest one that meets target
 /// uncertainties.

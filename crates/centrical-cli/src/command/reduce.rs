@@ -5,9 +5,8 @@ use std::path::PathBuf;
 use centrical_report::reduction_text;
 use centrical_session::{Error, ReductionReport, Session, reduce_without_inputs, write_reduced};
 
-use crate::format::Format;
-use crate::outcome::Outcome;
-use crate::printing::Printing;
+use crate::given::Format;
+use crate::output::{Outcome, Printing};
 use crate::progress;
 
 /// Reduce a session's records to plateau means: a session of a few kilobytes, calibrated to the same numbers.

@@ -3,15 +3,14 @@
 use std::path::{Path, PathBuf};
 
 use centrical_report::{
-    DocumentRequest, Emphasis, Language, Screen, UnitStatement, unit_text, verdict_text, write_documents,
+    DocumentRequest, Emphasis, Language, Screen, UnitStatement, read_issuer, result_text, unit_text, verdict_text,
+    write_all_documents, write_documents,
 };
 use centrical_session::{Axes, CalibrationResult, DocumentsReport, Error, Place};
 use clap::ValueEnum;
 
 use crate::given::acceleration;
-use crate::outcome::Outcome;
-use crate::output::remark;
-use crate::printing::Printing;
+use crate::output::{Outcome, Printing, remark};
 
 /// Write the documents of a calibration from its result.json.
 #[derive(Debug, clap::Args)]
@@ -54,7 +53,7 @@ pub struct Arguments {
     printing: Printing,
 }
 
-/// Language of the documents, and the laboratory's data in them.
+/// Language of the documents, and the laboratory's data in them: what every calibration hands over.
 #[derive(Debug, clap::Args)]
 pub struct Documents {
     /// Laboratory file: laboratory, customer, dates, standards and persons named in the certificates, and limits of the
@@ -83,6 +82,31 @@ impl Documents {
             }
             in_axes => in_axes,
         }
+    }
+
+    /// Writes the documents to the folder `out`, shows the result, which is `written` to a file or folder, and says whether it is acceptable.
+    pub fn hand_over(
+        &self,
+        result: &CalibrationResult,
+        printing: Printing,
+        out: Option<&Path>,
+        written: Option<&Path>,
+    ) -> Result<Outcome, Error> {
+        let issuer = self.laboratory.as_deref().map(|file| read_issuer(file, result)).transpose()?;
+        remark_other_days(issuer.as_ref().and_then(|issuer| issuer.other_days(result)).as_deref());
+        if let Some(folder) = out {
+            write_all_documents(result, issuer.as_ref(), self.language.into(), folder)?;
+        }
+        let objections = result.objections();
+        let unit = issuer.and_then(|issuer| issuer.unit);
+        let said = written.map(|written| format!("Written to {}", written.display()));
+        let text = || result_text(result, unit.as_ref(), said.as_deref());
+        printing.show(text, || result.to_json())?;
+        // The result does not hold what the laboratory's limits say of the unit.
+        if let Some(unit) = unit.as_ref().filter(|_| printing.json) {
+            remark(&unit_text(unit));
+        }
+        Ok(Outcome::acceptable(objections.is_empty() && is_within_limits(unit.as_ref())))
     }
 }
 
@@ -142,7 +166,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
 }
 
 /// Remarks that a certificate is of other days than the session.
-pub fn remark_other_days(words: Option<&str>) {
+fn remark_other_days(words: Option<&str>) {
     let mut screen = Screen::default();
     if let Some(words) = words {
         screen.marked(Emphasis::Warning, "OTHER DAYS", words);
@@ -151,6 +175,6 @@ pub fn remark_other_days(words: Option<&str>) {
 }
 
 /// Whether the unit keeps the limits that were asked for; limits that were not are kept.
-pub fn is_within_limits(unit: Option<&UnitStatement>) -> bool {
+fn is_within_limits(unit: Option<&UnitStatement>) -> bool {
     unit.is_none_or(UnitStatement::is_within)
 }

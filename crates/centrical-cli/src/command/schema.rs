@@ -2,11 +2,9 @@
 
 use std::path::PathBuf;
 
+use crate::output::{Outcome, print};
 use centrical_session::{Error, SettingsForm, settings_schema, write_whole};
 use clap::ValueEnum;
-
-use crate::outcome::Outcome;
-use crate::output::print;
 
 /// Print the JSON Schema of a settings file, for completion and checks in an editor.
 ///

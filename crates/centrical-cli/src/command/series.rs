@@ -8,9 +8,7 @@ use centrical_report::Screen;
 use centrical_session::{Error, FailedSession, Method, SeriesRequest, SeriesSummary, calibrate_series, matching_paths};
 
 use crate::interruption::asked_to_end;
-use crate::outcome::Outcome;
-use crate::output::{print, remark};
-use crate::printing::Printing;
+use crate::output::{Outcome, Printing, print, remark};
 use crate::progress;
 
 /// Calibrate many sessions, one on each core, into a store and a table.
@@ -67,7 +65,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
         reduced: arguments.reduced,
     };
     let sessions = matching_paths(&arguments.sessions)?;
-    let bar = progress::sessions(sessions.len(), arguments.printing.quiet);
+    let bar = progress::sessions(sessions.len(), arguments.printing);
     let asked = asked_to_end();
     let summary = calibrate_series(&sessions, &request, &|count| {
         bar.inc(count as u64);

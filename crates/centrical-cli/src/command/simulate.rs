@@ -5,9 +5,8 @@ use std::path::PathBuf;
 use centrical_report::Screen;
 use centrical_session::{Error, Session, SimulationReport, Truth, simulate_session};
 
-use crate::format::Format;
-use crate::outcome::Outcome;
-use crate::printing::Printing;
+use crate::given::Format;
+use crate::output::{Outcome, Printing};
 use crate::progress;
 
 /// Simulate a session: records, telemetry and experiment.toml, with truth.json beside them.
@@ -38,7 +37,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let truth = Truth::read(&arguments.truth, &plan, arguments.seed)?;
     let plan = &truth.plan;
     let records = plan.mountings.len() + plan.rest_tables.len();
-    let bar = progress::mountings("simulating", records, arguments.printing);
+    let bar = progress::mountings(records, arguments.printing);
     simulate_session(&truth, arguments.seed, arguments.format.into(), &arguments.out, &progress::counting(&bar))?;
     bar.finish_and_clear();
     arguments

@@ -2,17 +2,15 @@
 
 use std::path::{Path, PathBuf};
 
+use centrical_report::refuse_outputs;
 use centrical_session::{
     ColumnName, Error, Folder, Method, Place, STANDARD_GRAVITY, Session, StatedAttitudes, TumbleRequest, calibrate,
     claim_folder, tumble, unwatched,
 };
 
-use super::hand_over::refuse_outputs;
 use super::report::Documents;
 use crate::given::{ThreeColumns, acceleration, angle, column_name, gravity, sampling_rate, turning_radius};
-use crate::outcome::Outcome;
-use crate::output::remark_unused_time;
-use crate::printing::Printing;
+use crate::output::{Outcome, Printing, remark_unused_time};
 
 /// Calibrate a unit by gravity alone, from records in which it is turned and rests again and again.
 #[derive(Debug, clap::Args)]

@@ -6,7 +6,7 @@ use centrical_live::{Results, Server, Stored};
 use centrical_session::{Error, Place, Store};
 
 use crate::command::history::PageOptions;
-use crate::outcome::Outcome;
+use crate::output::Outcome;
 use crate::serving::{USUAL, remain, serve};
 
 /// Show results in browsers without writing files: a list with verdicts, a report each, two compared; and the live page of a

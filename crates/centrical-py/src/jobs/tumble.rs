@@ -2,14 +2,14 @@
 
 use std::path::{Path, PathBuf};
 
-use centrical_report::{Language, write_all_documents};
+use centrical_report::{Language, refuse_outputs, write_all_documents};
 use centrical_session::{
     Dimension, Error, Folder, Quantity, STANDARD_GRAVITY, StatedAttitudes, TumbleRequest, claim_folder,
 };
 use nalgebra::Vector3;
 use pyo3::prelude::*;
 
-use crate::given::{GivenFile, refuse_outputs};
+use crate::given::GivenFile;
 use crate::progress::{self, Shown};
 use crate::result::CalibrationResult;
 use crate::words::{Amount, GivenColumn, column, refused};
@@ -76,7 +76,7 @@ pub fn tumble(
         let folder = out.as_deref().unwrap_or(Path::new(""));
         let claim = out.as_deref().map(claim_folder).transpose()?;
         if out.is_some() {
-            refuse_outputs(folder, &request.inputs().collect::<Vec<_>>())?;
+            refuse_outputs(Some(&folder.join("result.json")), Some(folder), &request.inputs().collect::<Vec<_>>())?;
         }
         let tumble = centrical_session::tumble(&request, folder, &|bytes| work.advance(bytes))?;
         if out.is_some() {

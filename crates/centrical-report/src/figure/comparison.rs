@@ -7,12 +7,7 @@ use crate::language::Language;
 use crate::plot::{Axis, Plot, Point, Series};
 
 /// `E_n` of every coefficient of every pair as a plot; beyond the lines at -1 and 1 two results disagree.
-pub fn comparison_plot(report: &ComparisonReport) -> String {
-    comparison_drawing(report, Language::English)
-}
-
-/// The same in a language.
-pub fn comparison_drawing(report: &ComparisonReport, language: Language) -> String {
+pub fn comparison_plot(report: &ComparisonReport, language: Language) -> String {
     let messages = language.comparison();
     let most = report.comparisons.iter().map(|pair| pair.differences.len()).max().unwrap_or(0);
     let bound = |level: f64| vec![Point::new(0.5, level), Point::new(most as f64 + 0.5, level)];

@@ -128,9 +128,14 @@ pub fn write_documents(request: &DocumentRequest) -> Result<Documents, Error> {
     Ok(Documents { unit: issuer.and_then(|issuer| issuer.unit), other_days, result })
 }
 
-/// The files of [`write_all_documents`], but for plots.
-pub fn document_files(folder: &Path) -> Vec<PathBuf> {
-    [REPORT, CERTIFICATE, DIGITAL_CERTIFICATE].map(|name| folder.join(name)).to_vec()
+/// Refuses the file of a `result`, or what [`write_all_documents`] writes to a `folder` beside plots, over what is read.
+///
+/// # Errors
+/// [`Error`] when one of the `inputs` would be overwritten.
+pub fn refuse_outputs(result: Option<&Path>, folder: Option<&Path>, inputs: &[&Path]) -> Result<(), Error> {
+    let documents = [REPORT, CERTIFICATE, DIGITAL_CERTIFICATE].map(|name| Some(folder?.join(name)));
+    let outputs: Vec<PathBuf> = result.map(Path::to_owned).into_iter().chain(documents.into_iter().flatten()).collect();
+    Ok(refuse_inputs(&outputs, inputs)?)
 }
 
 const REPORT: &str = "report.html";

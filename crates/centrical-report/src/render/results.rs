@@ -6,10 +6,10 @@ use centrical_session::{CalibrationResult, ComparisonReport};
 
 use super::live::{languages, served};
 use super::screen::shown;
-use crate::figure::comparison_drawing;
+use crate::figure::comparison_plot;
 use crate::language::Language;
 use crate::plot::Escaped;
-use crate::terminal::comparison_screen;
+use crate::terminal::comparison_text;
 
 /// A result in the list: where it lies, and what it says or why it cannot be read.
 #[derive(Debug)]
@@ -91,8 +91,8 @@ pub fn compared_page(report: &ComparisonReport, language: Language) -> String {
     };
     let mut body = compared_header(class, verdict, language);
     let _ =
-        writeln!(body, "<figure>{}</figure>\n<div lang=\"{}\">", comparison_drawing(report, language), language.code());
-    shown(&mut body, &comparison_screen(report, language));
+        writeln!(body, "<figure>{}</figure>\n<div lang=\"{}\">", comparison_plot(report, language), language.code());
+    shown(&mut body, &comparison_text(report, language));
     body.push_str("</div>\n");
     served(verdict, &body, false, language)
 }

@@ -4,11 +4,10 @@ use centrical::uncertainty::{Budget, CurvePoint, Degrees, Level, Pattern, Validi
 use centrical::{Experiment, Fit, MeasurementModel, Parameter, Parameters, STANDARD_GRAVITY};
 use centrical_session::{Assessment, MICRO_G, PatternSummary, customary, rpm};
 
-use super::calibrate::verdict_text;
-use super::pattern::pattern_in_words;
+use super::phrases::{legend, pattern_in_words};
 use super::screen::Screen;
-use super::symbols::legend;
 use super::table::{Align, Cell, Table};
+use super::verdict::verdict_text;
 use crate::number::{counted, two_digits, unsigned_zero};
 
 /// The whole assessment, expanded uncertainties for a probability of `coverage`; the correlations if they are wanted.

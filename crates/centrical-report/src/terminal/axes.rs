@@ -5,7 +5,7 @@ use centrical_session::{AxesParameter, CalibrationResult};
 use super::screen::Screen;
 use super::table::{Align, Cell, Table};
 use crate::language::Language;
-use crate::number::{counted, with_uncertainty};
+use crate::number::counted;
 
 /// Micro-units in one.
 const MICRO: f64 = 1e6;
@@ -25,7 +25,7 @@ pub(super) fn axes(screen: &mut Screen, result: &CalibrationResult) {
     let cells = |stem: &str, less: [f64; 3], factor: f64| -> Vec<Cell> {
         let of_row = |p: &&AxesParameter| p.name.strip_prefix(stem).is_some_and(|index| index.len() == 1);
         let shown = axes.parameters.iter().filter(of_row).zip(less);
-        shown.map(|(p, less)| cell((p.value - less) * factor, p.standard_uncertainty * factor)).collect()
+        shown.map(|(p, less)| Cell::estimate(factor, p.value - less, p.standard_uncertainty)).collect()
     };
     let is_near = axes.matrix.iter().enumerate().all(|(i, row)| 1.0 - row[i] < NEAR);
     for newtonometer in 0..3 {
@@ -52,8 +52,4 @@ pub(super) fn axes(screen: &mut Screen, result: &CalibrationResult) {
             &format!("The case: mean turn of {scatter}; the scatter of their seats is in the uncertainty."),
         );
     }
-}
-
-fn cell(value: f64, standard_uncertainty: f64) -> Cell {
-    Cell::estimate(with_uncertainty(value, standard_uncertainty))
 }

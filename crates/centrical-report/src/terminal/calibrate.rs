@@ -2,29 +2,24 @@
 
 use centrical::Group;
 use centrical_session::{
-    CalibrationResult, OutputSummary, ParameterEstimate, ResultObjection, RivalSummary, TermSummary, ValiditySummary,
-    customary,
+    CalibrationResult, OutputSummary, ParameterEstimate, RivalSummary, TermSummary, ValiditySummary, customary,
 };
 
 use super::axes::axes as other_axes;
-use super::chance::chance_to_three_places;
 use super::drift::drift;
-use super::pattern::pattern_in_words;
-use super::priors::priors as prior_table;
+use super::phrases::{chance_to_three_places, changes_for, legend, pattern_in_words};
 use super::rests::rests;
-use super::rests_on::rests_on_text;
-use super::rivals::changes_for;
-use super::screen::{Emphasis, Screen};
-use super::symbols::legend;
+use super::rests_on::{priors as prior_table, rests_on_text};
+use super::screen::Screen;
 use super::table::{Align, Cell, Table};
-use crate::document::{objection, rival};
+use crate::document::rival;
 use crate::evaluation::{ParameterName, combination, monomial};
 use crate::language::Language;
-use crate::number::{counted, with_uncertainty};
+use crate::number::counted;
 
 /// The result as text: parameters with standard uncertainties in customary units, the fit, what is not
 /// estimable and why, what was rejected.
-pub fn terminal_table(result: &CalibrationResult) -> Screen {
+pub(super) fn table_of(result: &CalibrationResult) -> Screen {
     let mut screen = Screen::default();
     heading(&mut screen, result);
     error_model(&mut screen, result);
@@ -178,7 +173,7 @@ fn is_of_instrument(result: &CalibrationResult, parameter: &ParameterEstimate) -
 fn cell(parameter: &ParameterEstimate) -> Cell {
     let factor = customary(&parameter.unit, parameter.group).0;
     match (parameter.value, parameter.standard_uncertainty) {
-        (Some(value), Some(uncertainty)) => Cell::estimate(with_uncertainty(value * factor, uncertainty * factor)),
+        (Some(value), Some(uncertainty)) => Cell::estimate(factor, value, uncertainty),
         _ => "not seen".into(),
     }
 }
@@ -235,13 +230,8 @@ fn terms_without(result: &CalibrationResult) -> Option<String> {
 
 /// What rests on priors, and what the data added to each.
 fn priors(screen: &mut Screen, result: &CalibrationResult) {
-    let given: Vec<_> = result.parameters.iter().filter_map(|p| Some((p, p.prior?))).collect();
-    if given.is_empty() {
-        return;
-    }
-    screen.gap();
-    screen.head("PRIORS", "standard uncertainty after the data over that before");
-    screen.table(prior_table(given.iter().map(|(p, prior)| (p.name.as_str(), p.group, prior.posterior_over_prior))));
+    let ratio = |p: &ParameterEstimate| Some(p.prior?.posterior_over_prior);
+    prior_table(screen, result.parameters.iter().filter_map(|p| Some((p.name.as_str(), p.group, ratio(p)?))));
     let resting = result.parameters.iter().filter(|p| p.rests_on_prior && p.group != Group::Attitude);
     let resting: Vec<&str> = resting.map(|p| p.name.as_str()).collect();
     if !resting.is_empty() {
@@ -391,23 +381,4 @@ fn rivals(screen: &mut Screen, validity: &ValiditySummary) {
     if let Some(first) = shown.first().and_then(RivalSummary::rival) {
         screen.fact("", &format!("models fits it in full; to have it in the model: {}", changes_for(&[first])));
     }
-}
-
-/// The verdict in a line, or one for each objection; said again below a text that is longer than a screen. `is_checked`: whether any reading is
-/// redundant.
-pub fn verdict_text(objections: &[ResultObjection], is_checked: bool) -> Screen {
-    let mut screen = Screen::default();
-    if objections.is_empty() {
-        let unchecked = "but no reading is redundant: nothing checks the stated uncertainties";
-        let words = if is_checked { "no check raised an objection" } else { unchecked };
-        screen.marked(Emphasis::Acceptable, "ACCEPTABLE", words);
-        screen.close(Emphasis::Acceptable, "ACCEPTABLE", words);
-        return screen;
-    }
-    for reason in objections {
-        screen.marked(Emphasis::NotAcceptable, "NOT ACCEPTABLE", &objection(reason, Language::English));
-    }
-    let reasons = format!("for {}, in the first lines", counted(objections.len(), "reason"));
-    screen.close(Emphasis::NotAcceptable, "NOT ACCEPTABLE", &reasons);
-    screen
 }

@@ -2,20 +2,14 @@
 
 use centrical_session::{ComparedResultSummary, ComparisonReport, PairComparison, customary};
 
-use super::chance::chance;
+use super::phrases::{chance, legend_in};
 use super::screen::{Emphasis, Screen};
-use super::symbols::legend_in;
 use super::table::{Align, Cell, Table};
 use crate::language::{ComparisonMessages, Language};
 use crate::number::{unsigned_zero, with_uncertainty};
 
 /// Calibrations of one unit, two by two.
-pub fn comparison_text(report: &ComparisonReport) -> Screen {
-    comparison_screen(report, Language::English)
-}
-
-/// The same in a language.
-pub(crate) fn comparison_screen(report: &ComparisonReport, language: Language) -> Screen {
+pub fn comparison_text(report: &ComparisonReport, language: Language) -> Screen {
     let messages = language.comparison();
     let mut screen = Screen::default();
     let (emphasis, [mark, words]) = if report.agree && report.comparisons.iter().any(|pair| pair.same_files > 0) {
@@ -80,7 +74,7 @@ fn differences(screen: &mut Screen, pair: &PairComparison, language: Language) {
         let (factor, unit) = customary(&d.unit, d.group);
         let shown = |share: f64| {
             let (value, u) = with_uncertainty(share * d.difference, share.abs() * d.standard_uncertainty);
-            Cell::estimate((language.plain(value), language.plain(u)))
+            Cell::shown((language.plain(value), language.plain(u)))
         };
         let per_year = pair.years.map_or(Cell::default(), |years| shown(factor / years));
         let mark = if d.disagrees { messages.disagrees } else { "" };

@@ -2,7 +2,7 @@
 
 use centrical::uncertainty::{FittedCandidate, Level, Selection, chance_of_residuals};
 
-use super::rivals::changes_for;
+use super::phrases::changes_for;
 use super::screen::{Emphasis, Screen};
 use super::table::{Align, Cell, Table};
 use crate::number::counted;

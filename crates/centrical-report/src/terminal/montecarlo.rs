@@ -4,9 +4,9 @@ use centrical::Parameters;
 use centrical::uncertainty::{MonteCarlo, WeightedSquare};
 use centrical_session::{MonteCarloCase, customary};
 
+use super::phrases::legend;
 use super::prediction::LEANING;
 use super::screen::Screen;
-use super::symbols::legend;
 use super::table::{Align, Cell, Table};
 use crate::number::{counted, two_digits, unsigned_zero};
 

@@ -5,9 +5,9 @@ use centrical_session::{
     ConditionReport, ObservabilityReport, ObservedParameter, RemedyReport, customary, harmless_line,
 };
 
+use super::phrases::{extent, rests_name};
 use super::prediction::prediction_text;
-use super::priors::priors as prior_table;
-use super::rests_line::{extent, rests_name};
+use super::rests_on::priors as prior_table;
 use super::screen::Screen;
 use crate::number::{counted, two_digits};
 
@@ -169,13 +169,8 @@ fn need(condition: &ConditionReport) -> String {
 }
 
 fn priors(screen: &mut Screen, report: &ObservabilityReport) {
-    let given: Vec<_> = report.parameters.iter().filter_map(|p| Some((p, p.prior?))).collect();
-    if given.is_empty() {
-        return;
-    }
-    screen.gap();
-    screen.head("PRIORS", "standard uncertainty after the data over that before");
-    screen.table(prior_table(given.iter().map(|(p, prior)| (p.name.as_str(), p.group, prior.posterior_over_prior))));
+    let ratio = |p: &ObservedParameter| Some(p.prior?.posterior_over_prior);
+    prior_table(screen, report.parameters.iter().filter_map(|p| Some((p.name.as_str(), p.group, ratio(p)?))));
     let resting = report.parameters.iter().filter(|p| p.rests_on_prior && p.group != Group::Attitude);
     let resting: Vec<&str> = resting.map(|p| p.name.as_str()).collect();
     if !resting.is_empty() {

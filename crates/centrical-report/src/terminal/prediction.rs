@@ -3,10 +3,9 @@
 use centrical::{Group, STANDARD_GRAVITY};
 use centrical_session::{MICRO_G, PredictedParameter, PredictionReport, customary};
 
-use super::rests_line::{extent, rests_name};
+use super::phrases::{extent, legend, rests_name};
 use super::rests_on::rests_on_text;
 use super::screen::Screen;
-use super::symbols::legend;
 use super::table::{Align, Cell, Table};
 use crate::number::two_digits;
 

@@ -1,10 +1,11 @@
-//! What a result rests on, as text for the terminal.
+//! What a result rests on, as text for the terminal: the absence of effects, and prior knowledge.
 
-use centrical::{Extension, Extra, Rival};
+use centrical::{Extension, Extra, Group, Rival};
 use centrical_session::RestsOn;
 
-use super::rivals::changes_for;
+use super::phrases::{changes_for, rests_name};
 use super::screen::Screen;
+use super::table::{Align, Table};
 use crate::document::rests_on_sentence;
 use crate::language::Language;
 
@@ -54,5 +55,24 @@ fn protection(effect: &RestsOn) -> String {
             "protect: state {bound} under [uncertainty]; as an unknown it would leave {} undetermined",
             effect.parameter
         ),
+    }
+}
+
+/// What the data add to prior knowledge: for each prior its parameter, and the standard uncertainty after the data over that before.
+/// The known attitudes of rests stand in one row. Nothing without priors.
+pub(super) fn priors<'p>(screen: &mut Screen, given: impl Iterator<Item = (&'p str, Group, f64)>) {
+    let (attitudes, others): (Vec<_>, Vec<_>) = given.partition(|(_, group, _)| *group == Group::Attitude);
+    let mut table = Table::new(1, [("", Align::Left), ("", Align::Right)]);
+    for (name, _, ratio) in &others {
+        table.row([(*name).into(), format!("{ratio:.3}").into()]);
+    }
+    let extremes = attitudes.iter().map(|(_, _, ratio)| (*ratio, *ratio));
+    if let Some((low, high)) = extremes.reduce(|(low, high), (r, _)| (low.min(r), high.max(r))) {
+        table.row([rests_name(attitudes.len()).into(), format!("{low:.3} to {high:.3}").into()]);
+    }
+    if !table.rows().is_empty() {
+        screen.gap();
+        screen.head("PRIORS", "standard uncertainty after the data over that before");
+        screen.table(table);
     }
 }

@@ -2,8 +2,7 @@
 
 use centrical_session::harmless_line;
 
-use super::table::Table;
-use super::wrap::wrapped;
+use super::table::{Table, wrapped};
 
 /// Narrowest width that texts are made for, in characters: narrower terminals wrap by themselves.
 pub const NARROWEST: usize = 40;

@@ -1,8 +1,8 @@
-//! Tables in lines: columns as wide as their cells, folded where a line ends.
+//! Words in lines; and tables in lines: columns as wide as their cells, folded where a line ends.
 
 use std::fmt::{self, Display, Formatter};
 
-use super::wrap::wrapped;
+use crate::number::with_uncertainty;
 
 /// Blanks before a row, and between two columns.
 const MARGIN: usize = 2;
@@ -32,8 +32,13 @@ impl<T: Into<String>> From<T> for Cell {
 }
 
 impl Cell {
+    /// `value ± uncertainty` times `factor`, to two digits of the uncertainty.
+    pub fn estimate(factor: f64, value: f64, uncertainty: f64) -> Self {
+        Self::shown(with_uncertainty(factor * value, factor.abs() * uncertainty))
+    }
+
     /// `value ± uncertainty`, aligned at the sign.
-    pub fn estimate((value, uncertainty): (String, String)) -> Self {
+    pub fn shown((value, uncertainty): (String, String)) -> Self {
         Self(value, format!(" ± {uncertainty}"))
     }
 
@@ -179,6 +184,47 @@ impl Table {
     }
 }
 
+/// The words in lines of `width` characters: the first begins after `first` characters, others after `further`. Blanks at
+/// the beginning stay. A word that is longer than a line has a line of its own.
+pub(super) fn wrapped(words: &str, width: usize, first: usize, further: usize) -> Vec<String> {
+    let leading = words.chars().take_while(|c| *c == ' ').count();
+    let mut lines = vec![" ".repeat(leading)];
+    let (mut used, mut is_empty) = (first + leading, true);
+    for word in unbroken(words.trim()) {
+        let length = word.chars().count();
+        if !is_empty && used + 1 + length > width {
+            lines.push(String::new());
+            (used, is_empty) = (further, true);
+        }
+        if let Some(line) = lines.last_mut() {
+            if !is_empty {
+                line.push(' ');
+            }
+            line.push_str(&word);
+        }
+        used += length + usize::from(!is_empty);
+        is_empty = false;
+    }
+    lines
+}
+
+/// The words; a value stays with its uncertainty, and a name with what is set.
+fn unbroken(words: &str) -> Vec<String> {
+    let mut found: Vec<String> = Vec::new();
+    let mut is_open = false;
+    for word in words.split_whitespace() {
+        match found.last_mut() {
+            Some(last) if is_open || matches!(word, "±" | "=") => {
+                last.push(' ');
+                last.push_str(word);
+            }
+            _ => found.push(word.to_owned()),
+        }
+        is_open = matches!(word, "±" | "=");
+    }
+    found
+}
+
 #[cfg(test)]
 mod tests {
     use super::{Align, Cell, Table};
@@ -186,7 +232,7 @@ mod tests {
     fn table() -> Table {
         let columns = [("", Align::Left), ("value", Align::Right), ("chi^2", Align::Right), ("note", Align::Words)];
         let mut table = Table::new(1, columns);
-        let estimate = |value: &str, u: &str| Cell::estimate((value.to_owned(), u.to_owned()));
+        let estimate = |value: &str, u: &str| Cell::shown((value.to_owned(), u.to_owned()));
         table.row(["first".into(), estimate("-3.95", "0.10"), "12.0".into()]);
         table.row([
             "second".into(),

@@ -3,8 +3,8 @@
 use centrical_session::{DoubtKind, HistoryLine, HistoryList, unit_name};
 
 use crate::number::counted;
+use crate::terminal::phrases::short_list;
 use crate::terminal::screen::{Emphasis, Screen};
-use crate::terminal::short_list::short_list;
 use crate::terminal::table::{Align, Table};
 
 /// A line for each calibration, by unit and day.

@@ -2,10 +2,9 @@
 
 use centrical_session::{StationHistoryReport, StationParameter, customary};
 
-use crate::number::{counted, two_digits, with_uncertainty};
-use crate::terminal::chance::chance;
+use crate::number::{counted, two_digits};
+use crate::terminal::phrases::{chance, legend};
 use crate::terminal::screen::{Emphasis, Screen};
-use crate::terminal::symbols::legend;
 use crate::terminal::table::{Align, Cell, Table};
 
 /// What is found of a parameter.
@@ -90,14 +89,13 @@ fn parameters(screen: &mut Screen, report: &StationHistoryReport) {
     let mut table = Table::new(2, columns);
     for p in &report.parameters {
         let (factor, unit) = customary(&p.unit, p.group);
-        let estimate = |value: f64, u: f64| Cell::estimate(with_uncertainty(factor * value, factor.abs() * u));
         let slope = p.slope_per_year.zip(p.slope_uncertainty);
         table.row([
             p.name.as_str().into(),
             unit.into(),
-            estimate(p.mean, p.scatter),
+            Cell::estimate(factor, p.mean, p.scatter),
             format!("{:.1}", p.scatter_ratio).into(),
-            slope.map_or_else(Cell::default, |(slope, u)| estimate(slope, u)),
+            slope.map_or_else(Cell::default, |(slope, u)| Cell::estimate(factor, slope, u)),
             p.change.map_or_else(String::new, |change| two_digits(factor * change)).into(),
             p.changed_after.map_or_else(String::new, |day| day.to_string()).into(),
             p.probability.map_or_else(|| "not tested".to_owned(), chance).into(),

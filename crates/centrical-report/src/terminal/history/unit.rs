@@ -8,10 +8,8 @@ use centrical_session::{
 };
 
 use crate::number::{counted, two_digits, unsigned_zero, with_uncertainty};
-use crate::terminal::chance::chance;
+use crate::terminal::phrases::{chance, legend, short_list};
 use crate::terminal::screen::{Emphasis, Screen};
-use crate::terminal::short_list::short_list;
-use crate::terminal::symbols::legend;
 use crate::terminal::table::{Align, Cell, Table};
 
 /// A unit over its calibrations.
@@ -285,7 +283,7 @@ fn parameters(screen: &mut Screen, report: &UnitHistoryReport) {
 
 fn parameter(p: &UnitParameter) -> [Cell; 11] {
     let (factor, unit) = customary(&p.unit, p.group);
-    let estimate = |value: f64, u: f64| Cell::estimate(with_uncertainty(factor * value, factor.abs() * u));
+    let estimate = |(value, u): (f64, f64)| Cell::estimate(factor, value, u);
     let last = p.values.iter().zip(&p.standard_uncertainties).rev().find_map(|(value, u)| value.zip(*u));
     let shown = |value: f64| two_digits(factor.abs() * value);
     let between = p.between.map_or_else(String::new, shown);
@@ -300,11 +298,11 @@ fn parameter(p: &UnitParameter) -> [Cell; 11] {
     [
         p.name.as_str().into(),
         unit.into(),
-        last.map_or_else(Cell::default, |(value, u)| estimate(value, u)),
+        last.map_or_else(Cell::default, estimate),
         between.into(),
         p.between_interval.map_or_else(String::new, |ends| interval(ends, shown)).into(),
         p.variance_ratio.map_or_else(String::new, |f| format!("{f:.1}")).into(),
-        slope.map_or_else(Cell::default, |(value, u)| estimate(value, u)),
+        slope.map_or_else(Cell::default, estimate),
         p.forecast.map_or_else(String::new, |ends| forecast(ends.map(|end| factor * end))).into(),
         e_n(p.e_n_previous).into(),
         e_n(p.e_n_first).into(),

@@ -6,10 +6,8 @@ use centrical_session::{
 
 use super::unit::left_out;
 use crate::number::{counted, with_uncertainty};
-use crate::terminal::chance::chance;
+use crate::terminal::phrases::{chance, legend, short_list};
 use crate::terminal::screen::{Emphasis, Screen};
-use crate::terminal::short_list::short_list;
-use crate::terminal::symbols::legend;
 use crate::terminal::table::{Align, Cell, Table};
 
 /// Calibrations that are left out and named one by one.
@@ -144,9 +142,8 @@ fn parameters(screen: &mut Screen, report: &UnitsHistoryReport) {
     let mut table = Table::new(2, columns);
     for p in &report.parameters {
         let (factor, unit) = customary(&p.unit, p.group);
-        let of_units = |value: f64| with_uncertainty(factor * value, factor.abs() * p.deviation.unwrap_or(0.0));
-        let shown = |value: f64| Cell::from(of_units(value).0);
-        let mean = if p.deviation.is_some() { Cell::estimate(of_units(p.mean)) } else { shown(p.mean) };
+        let shown = |value: f64| in_digits_of(factor, value, p.deviation.unwrap_or(0.0));
+        let mean = p.deviation.map_or_else(|| shown(p.mean), |deviation| Cell::estimate(factor, p.mean, deviation));
         let capability = p.capability.as_ref();
         let interval = capability.map(|c| format!("{:.2} to {:.2}", c.cpk_interval[0], c.cpk_interval[1]));
         table.row([
@@ -163,6 +160,11 @@ fn parameters(screen: &mut Screen, report: &UnitsHistoryReport) {
     }
     screen.table(table);
     legend(screen, report.parameters.iter().map(|p| (p.name.as_str(), p.group)));
+}
+
+/// A value times `factor` with the digits that it has beside a deviation.
+fn in_digits_of(factor: f64, value: f64, deviation: f64) -> Cell {
+    with_uncertainty(factor * value, factor.abs() * deviation).0.into()
 }
 
 /// What the comparison of batches says where they do not differ.
@@ -208,8 +210,8 @@ fn batch_means(screen: &mut Screen, report: &UnitsHistoryReport) {
     for p in differing {
         let (factor, unit) = customary(&p.unit, p.group);
         for b in &p.batches {
-            let shown = with_uncertainty(factor * b.mean, factor.abs() * b.deviation.or(p.deviation).unwrap_or(0.0));
-            let mean = if b.deviation.is_some() { Cell::estimate(shown) } else { shown.0.into() };
+            let alone = || in_digits_of(factor, b.mean, p.deviation.unwrap_or(0.0));
+            let mean = b.deviation.map_or_else(alone, |deviation| Cell::estimate(factor, b.mean, deviation));
             table.row([
                 p.name.as_str().into(),
                 unit.into(),

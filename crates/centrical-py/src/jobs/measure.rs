@@ -1,14 +1,29 @@
-//! `noise`: deviations of the Allan family, spectrum and noise terms of a record.
+//! What is done with records: `reduce`, `noise`.
 
 use std::path::{Path, PathBuf};
 
 use centrical_report::write_noise;
-use centrical_session::{Error, Estimator, Folder, NoiseAnalysis, NoiseRequest, Quantity, noise_of, noise_of_plateau};
+use centrical_session::{
+    Error, Estimator, Folder, NoiseAnalysis, NoiseRequest, Quantity, ReductionReport, noise_of, noise_of_plateau,
+    reduce_without_inputs, write_reduced,
+};
 use pyo3::prelude::*;
 
 use crate::given::{GivenFile, GivenSession};
 use crate::progress::{self, Shown};
-use crate::words::{Amount, GivenColumn, column, one_of, plateau};
+use crate::words::{self, Amount, GivenColumn, column, one_of, plateau};
+
+/// `centrical-reduction/1`.
+#[pyfunction]
+pub fn reduce(py: Python, session: GivenSession, out: PathBuf, format: &str, shown: Shown) -> PyResult<String> {
+    let format = words::format(format)?;
+    progress::run(py, &shown, |work| {
+        let session = session.read_for(work)?;
+        let (session, reduced) = reduce_without_inputs(&session, &|bytes| work.advance(bytes))?;
+        write_reduced(&session, &reduced, None, format, &out, &|bytes| work.advance(bytes))?;
+        ReductionReport::of(&session, &reduced, &out).to_json()
+    })
+}
 
 /// `centrical-noise/1`.
 #[pyfunction]
