@@ -4,25 +4,21 @@
 //! function that runs them. All three do what [`centrical_compensate`] does, statement by statement: the same start,
 //! the same certified number of Newton steps, the same refusal out of range.
 
-mod axes;
 mod c;
 mod model;
 mod octave;
 mod python;
-mod raw;
 mod statement;
-mod term;
-mod vectors;
 
 use centrical_compensate::{Compensation, NotInvertible, Term};
 use centrical_session::{CalibrationResult, ObjectionName, OutputSummary};
 
 use self::model::Model;
-pub use self::term::NamedTerm;
+pub use self::statement::NamedTerm;
 use crate::language::Language;
 
 /// What the first comment says of a result.
-pub fn heading(result: &CalibrationResult) -> Vec<String> {
+pub(crate) fn heading(result: &CalibrationResult) -> Vec<String> {
     let session = &result.session;
     let calibrated = if session.date.is_empty() { String::new() } else { format!(", calibrated {}", session.date) };
     let axes = result.axes.as_ref().map(|axes| {

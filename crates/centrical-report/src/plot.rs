@@ -20,7 +20,7 @@ mod series;
 mod svg;
 
 pub(crate) use self::draw::STYLE;
-pub use self::series::{Axis, Mark, Plot, Point, Scale, Series};
+pub use self::series::{Axis, Plot, Point, Series};
 pub(crate) use self::svg::{Escaped, Px};
 
 impl Plot {

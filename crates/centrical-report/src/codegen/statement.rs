@@ -1,8 +1,27 @@
 //! The error model as statements of a language: `error_2 += c[4] * f_1`, a line for each term and derivative.
 
-use centrical_compensate::Monomial;
+use centrical_compensate::{Monomial, Term};
+use centrical_session::{CalibrationResult, NoErrorModel, harmless_line};
 
-use super::term::{NamedTerm, harmless};
+/// A term and the name of its coefficient, for the comments.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NamedTerm {
+    /// Name of the coefficient: `G0_21`.
+    pub name: String,
+    /// The term.
+    pub term: Term,
+}
+
+impl NamedTerm {
+    /// The terms of a result with their estimated coefficients.
+    ///
+    /// # Errors
+    /// [`NoErrorModel`] as [`CalibrationResult::error_terms`].
+    pub fn of(result: &CalibrationResult) -> Result<Vec<Self>, NoErrorModel> {
+        let names = result.model.error_model.iter().map(|term| term.name.clone());
+        Ok(names.zip(result.error_terms()?).map(|(name, term)| Self { name, term }).collect())
+    }
+}
 
 /// How a language writes what the error model is made of. Indices count from 0.
 pub(super) trait Language {
@@ -75,4 +94,11 @@ fn product(language: &dyn Language, k: usize, (factor, monomial): (f64, Monomial
         factors.extend((0..power).map(|_| language.component(j)));
     }
     factors.join(language.times())
+}
+
+/// Text that stays within a comment of any of the languages, whatever a session calls itself.
+pub(super) fn harmless(text: &str) -> String {
+    let line = harmless_line(text).replace('\\', " ");
+    // The ends of a C comment, what begins a trigraph, and the marks of the templates.
+    line.replace("*/", "* /").replace("/*", "/ *").replace("??", "? ?").replace('@', "(at)")
 }

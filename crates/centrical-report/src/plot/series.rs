@@ -21,7 +21,7 @@ pub struct Axis {
 
 /// How values become lengths.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Scale {
+pub(crate) enum Scale {
     /// In proportion.
     Linear,
     /// By logarithm; values that are not positive have no place and are left out.
@@ -38,7 +38,7 @@ pub struct Series {
 
 /// How a series is drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Mark {
+pub(crate) enum Mark {
     /// A line through the points; a point that cannot be drawn breaks it.
     Line,
     /// A marker on every point, with its error bar.
