@@ -1,51 +1,39 @@
 //! The figures of a report: each a drawing, and a sentence that says what to see in it.
 
 mod attitudes;
-mod comparison;
 mod correlation;
 mod drawing;
-mod estimates;
 mod fit;
 mod frontier;
-mod history;
 mod live;
 mod noise;
 mod past;
 mod positions;
-mod prediction;
 mod record;
-mod units;
 
 use centrical::Position;
 use centrical_session::CalibrationResult;
 use nalgebra::Matrix3;
 
-pub use self::comparison::comparison_plot;
 pub use self::drawing::Figure;
 pub use self::frontier::frontier_plot;
-pub use self::history::history_figure;
-pub use self::live::{live_readings_figure, live_speeds_figure, live_uncertainties_figure};
+pub use self::live::{history_figure, live_readings_figure, live_speeds_figure, live_uncertainties_figure};
 pub use self::noise::noise_plots;
-pub use self::past::{chart_plots, unit_history_plots};
+pub use self::past::{batches_plot, chart_plots, comparison_plot, distribution_plot, unit_history_plots};
 use self::positions::position_drawings;
 pub use self::positions::positions_figure;
-pub use self::units::{batches_plot, distribution_plot};
 use crate::language::Language;
 
 /// All figures that can be drawn from a result, in the order of the report.
 pub fn figures(result: &CalibrationResult, language: Language) -> Vec<Figure> {
-    let of_attitudes = attitudes::attitudes(result, language);
-    let of_fit = fit::figures(result, language);
-    let correlation = correlation::figure(result, language);
-    let records = record::figure(result, language);
-    of_attitudes
+    attitudes::attitudes(result, language)
         .into_iter()
-        .chain(of_fit)
-        .chain(prediction::figure(result, language))
-        .chain(correlation)
+        .chain(fit::figures(result, language))
+        .chain(fit::prediction(result, language))
+        .chain(correlation::figure(result, language))
         .chain(fit::singular_values(result, language))
         .chain(fit::convergence(result, language))
-        .chain(records)
+        .chain(record::figure(result, language))
         .collect()
 }
 

@@ -4,8 +4,7 @@ use std::fmt::Write;
 
 use centrical_session::CalibrationResult;
 
-use super::drawing::Figure;
-use super::estimates::is_charted;
+use super::drawing::{Figure, is_charted};
 use crate::evaluation::symbol;
 use crate::language::Language;
 use crate::plot::{Escaped, Px};

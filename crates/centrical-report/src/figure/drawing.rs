@@ -1,5 +1,8 @@
 //! A figure: drawings, and a sentence that says what to see in them.
 
+use centrical::Group;
+use centrical_session::ParameterEstimate;
+
 use crate::language::Language;
 use crate::plot::Plot;
 
@@ -26,6 +29,11 @@ pub(super) fn of_plot(name: &'static str, caption: &str, plot: Plot, language: L
 /// A plot in the numbers of the language.
 pub(super) fn drawn(plot: Plot, language: Language) -> String {
     if language == Language::Russian { plot.with_decimal_comma() } else { plot }.to_svg()
+}
+
+/// Whether a figure of parameters shows this one: an estimate, and not the attitude of a rest, which is determined with that rest alone.
+pub(super) fn is_charted(parameter: &ParameterEstimate) -> bool {
+    parameter.estimable && parameter.group != Group::Attitude
 }
 
 impl Figure {

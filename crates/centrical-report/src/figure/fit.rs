@@ -1,12 +1,11 @@
-//! Plots of the fit: reading errors, residuals, singular values, convergence.
+//! Plots of the fit: reading errors, residuals, prediction, singular values, convergence.
 
 use centrical::{Group, STANDARD_GRAVITY};
 use centrical_session::{CalibrationResult, MICRO_G, PlateauSummary};
 use nalgebra::{Matrix3, Vector3};
 
-use super::drawing::{Figure, drawn, of_plot};
-use super::estimates::is_charted;
-use crate::evaluation::{ReadingError, expanded_of_normal, printed_combination, reading_errors};
+use super::drawing::{Figure, drawn, is_charted, of_plot};
+use crate::evaluation::{ReadingError, compensated, expanded_of_normal, printed_combination, reading_errors};
 use crate::language::Language;
 use crate::plot::{Axis, Plot, Point, Series};
 
@@ -105,6 +104,27 @@ fn by_axis<T>(plot: Plot, items: &[T], language: Language, point: impl Fn(&T, us
         let points = items.iter().map(|item| point(item, axis)).collect();
         plot.with(Series::markers(format!("{} {}", language.messages().axis, axis + 1), points))
     })
+}
+
+/// Expanded uncertainty of a compensated reading against the specific force along each axis, to the highest of the
+/// session; `None` if a parameter of the instrument is not determined.
+pub(super) fn prediction(result: &CalibrationResult, language: Language) -> Option<Figure> {
+    /// Points of a curve.
+    const POINTS: usize = 201;
+    let messages = language.messages();
+    let compensated = compensated(result)?;
+    let forces = result.plateaus.iter().filter_map(|plateau| plateau.specific_force).flatten();
+    let range = forces.map(f64::abs).fold(0.0, f64::max);
+    let axes = (Axis::linear(messages.force_axis), Axis::log(messages.prediction_axis));
+    let mut plot = Plot::new(messages.prediction_title, axes.0, axes.1);
+    for axis in 0..3 {
+        let curve = compensated.curve(&Vector3::ith(axis, 1.0), range, POINTS);
+        let points = curve
+            .iter()
+            .map(|point| Point::new(point.force / STANDARD_GRAVITY, expanded_of_normal(point.along) / MICRO_G));
+        plot = plot.with(Series::line(format!("{} {}", messages.axis, axis + 1), points.collect()));
+    }
+    Some(of_plot("prediction", messages.prediction_caption, plot, language))
 }
 
 /// Singular values, those of the null directions apart.

@@ -1,7 +1,12 @@
-//! Histories as plots: a parameter of a unit over its calibrations, control charts.
+//! Many calibrations as plots: a parameter of a unit over its calibrations, the units of a model, control charts, differences.
 
-use centrical_session::{ChartKind, ChartReport, ParameterLimits, UnitHistoryReport, UnitParameter, customary};
+use centrical_session::{
+    ChartKind, ChartReport, ComparisonReport, Date, ParameterLimits, PastSession, UnitHistoryReport, UnitParameter,
+    UnitsParameter, customary,
+};
 
+use super::drawing::drawn;
+use crate::language::Language;
 use crate::plot::{Axis, Plot, Point, Series};
 
 /// The value of each parameter over the sessions with its expanded uncertainty (k = 2), the forecast and the limits: name and plot.
@@ -11,8 +16,8 @@ pub fn unit_history_plots(report: &UnitHistoryReport, limits: &ParameterLimits) 
 
 fn unit_parameter(report: &UnitHistoryReport, p: &UnitParameter, limits: &ParameterLimits) -> Plot {
     let (factor, unit) = customary(&p.unit, p.group);
-    let years = |date: centrical_session::Date| date.in_years();
-    let point = |((session, value), u): ((&centrical_session::PastSession, &Option<f64>), &Option<f64>)| {
+    let years = |date: Date| date.in_years();
+    let point = |((session, value), u): ((&PastSession, &Option<f64>), &Option<f64>)| {
         let (value, u) = value.zip(*u)?;
         let ends = (factor * value - 2.0 * factor.abs() * u, factor * value + 2.0 * factor.abs() * u);
         Some(Point::new(years(session.date), factor * value).with_interval(ends.0, ends.1))
@@ -26,13 +31,72 @@ fn unit_parameter(report: &UnitHistoryReport, p: &UnitParameter, limits: &Parame
         plot = plot.with(Series::markers(format!("forecast, {} %", (1e8 * report.coverage).round() / 1e6), vec![at]));
     }
     let ends = report.sessions.first().map(|session| [years(session.date), years(report.until)]);
-    let (low, high) = limits.get(&p.name).copied().unwrap_or_default();
-    for (name, limit) in [("lower limit", low), ("upper limit", high)] {
-        if let Some((ends, limit)) = ends.zip(limit) {
-            plot = plot.with(Series::line(name, ends.map(|year| Point::new(year, factor * limit)).to_vec()));
-        }
+    match ends {
+        Some(ends) => with_limits(plot, &p.name, limits, |limit| ends.map(|year| Point::new(year, factor * limit))),
+        None => plot,
+    }
+}
+
+/// The plot with the limits of the parameter of this name, each a line between its ends.
+fn with_limits(plot: Plot, name: &str, limits: &ParameterLimits, ends: impl Fn(f64) -> [Point; 2]) -> Plot {
+    let (low, high) = limits.get(name).copied().unwrap_or_default();
+    [("lower limit", low), ("upper limit", high)].into_iter().fold(plot, |plot, (label, limit)| match limit {
+        Some(limit) => plot.with(Series::line(label, ends(limit).to_vec())),
+        None => plot,
+    })
+}
+
+/// Points of a distribution: more would be drawn on one another.
+const POINTS: usize = 200;
+
+/// The fraction of units below each value, of each of the `groups` of units that are named, with the limits.
+pub fn distribution_plot(p: &UnitsParameter, groups: &[(String, Vec<f64>)], limits: &ParameterLimits) -> Plot {
+    let (factor, unit) = customary(&p.unit, p.group);
+    let axes = (Axis::linear(format!("{}, {unit}", p.name)), Axis::linear("fraction of units").with_range(0.0, 1.0));
+    let mut plot = Plot::new(format!("{}: distribution", p.name), axes.0, axes.1).as_panel();
+    for (name, values) in groups {
+        let scaled: Vec<f64> = values.iter().map(|value| factor * value).collect();
+        plot = plot.with(Series::line(name.clone(), cumulated(scaled)));
+    }
+    with_limits(plot, &p.name, limits, |limit| [0.0, 1.0].map(|fraction| Point::new(factor * limit, fraction)))
+}
+
+/// The `k`-th of `n` values in order has the fraction `(k - 1/2) / n` below it.
+fn cumulated(mut values: Vec<f64>) -> Vec<Point> {
+    values.sort_by(f64::total_cmp);
+    let n = values.len();
+    let shown = n.min(POINTS);
+    let place = |k: usize| if shown < 2 { 0 } else { k * (n - 1) / (shown - 1) };
+    (0..shown).map(place).map(|k| Point::new(values[k], (k as f64 + 0.5) / n as f64)).collect()
+}
+
+/// The mean of each batch with its expanded uncertainty (k = 2) by the scatter of its units.
+pub fn batches_plot(p: &UnitsParameter) -> Plot {
+    let (factor, unit) = customary(&p.unit, p.group);
+    let axes = (Axis::linear("batch"), Axis::linear(format!("{}, {unit}", p.name)));
+    let mut plot = Plot::new(format!("{}: batches", p.name), axes.0, axes.1).as_panel();
+    for (n, batch) in p.batches.iter().enumerate() {
+        let mean = Point::new((n + 1) as f64, factor * batch.mean);
+        let half = batch.deviation.map(|deviation| 2.0 * (factor * deviation).abs() / (batch.units as f64).sqrt());
+        let mean = half.map_or(mean, |half| mean.with_interval(mean.y - half, mean.y + half));
+        plot = plot.with(Series::markers(batch.batch.clone(), vec![mean]));
     }
     plot
+}
+
+/// `E_n` of every coefficient of every pair as a plot; beyond the lines at -1 and 1 two results disagree.
+pub fn comparison_plot(report: &ComparisonReport, language: Language) -> String {
+    let messages = language.comparison();
+    let most = report.comparisons.iter().map(|pair| pair.differences.len()).max().unwrap_or(0);
+    let bound = |level: f64| vec![Point::new(0.5, level), Point::new(most as f64 + 0.5, level)];
+    let mut plot = Plot::new(messages.plot, Axis::linear(messages.plot_axis), Axis::linear("E_n"))
+        .with(Series::line("1", bound(1.0)))
+        .with(Series::line("-1", bound(-1.0)));
+    for pair in &report.comparisons {
+        let points = pair.differences.iter().enumerate().map(|(n, d)| Point::new(n as f64 + 1.0, d.e_n)).collect();
+        plot = plot.with(Series::markers((messages.plot_less)(pair.second + 1, pair.first + 1), points));
+    }
+    drawn(plot, language)
 }
 
 /// Individuals, moving ranges, weighted means and cumulative sums, each a plot with its limits.
