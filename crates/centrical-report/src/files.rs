@@ -2,11 +2,9 @@
 
 mod documents;
 mod pages;
-mod plots;
 
 pub use self::documents::{
     DocumentRequest, Documents, read_issuer, refuse_outputs, write_all_documents, write_documents, write_history_plot,
-    write_noise,
+    write_noise, write_plots,
 };
 pub use self::pages::{PagesRequest, StorePages, write_history_pages};
-pub use self::plots::write_plots;

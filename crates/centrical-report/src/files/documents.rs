@@ -1,5 +1,6 @@
-//! The documents of one result.
+//! The documents of one result, and plots as files.
 
+use std::fmt::Display;
 use std::path::{Path, PathBuf};
 
 use centrical::MeasurementModel;
@@ -15,6 +16,7 @@ use crate::evaluation::UnitStatement;
 use crate::figure::{figures, history_figure, noise_plots};
 use crate::language::Language;
 use crate::picture::read_picture;
+use crate::plot::Plot;
 use crate::render::{html, pdf};
 
 /// The documents that are made of a result.
@@ -208,6 +210,20 @@ pub fn write_history_plot(model: &MeasurementModel, folder: &Path) -> Result<(),
     let group_of = |name: &str| parameters.find(name).map(|j| parameters[j].group);
     if let Some(figure) = history_figure(&read_history(&history)?, &group_of, Language::English) {
         write_whole(&folder.join("watch-history.svg"), figure.drawings.concat().as_bytes())?;
+    }
+    Ok(())
+}
+
+/// Writes plots by their names, `NAME.svg`, into a folder, which is made if it is not there, and over none of the `inputs`.
+///
+/// # Errors
+/// [`Error`] when the folder does not take them, or one of them was read.
+pub fn write_plots(folder: &Path, plots: &[(impl Display, Plot)], inputs: &[PathBuf]) -> Result<(), Error> {
+    let files: Vec<PathBuf> = plots.iter().map(|(name, _)| folder.join(format!("{name}.svg"))).collect();
+    refuse_inputs(&files, inputs)?;
+    let _claim = claim_folder(folder)?;
+    for (file, (_, plot)) in files.iter().zip(plots) {
+        write_whole(file, plot.to_svg().as_bytes())?;
     }
     Ok(())
 }

@@ -1,7 +1,6 @@
 //! The pages of a store: its list, and a page for each model of units, each station, and each unit with two calibrations or more.
 
 mod overview;
-mod request;
 mod unit;
 mod written;
 
@@ -9,8 +8,8 @@ use std::path::Path;
 
 use centrical_session::{Error, OnProgress, claim_folder, refuse_inputs, unwatched};
 
+pub use self::overview::PagesRequest;
 use self::overview::{DUE_PAGE, Overview};
-pub use self::request::PagesRequest;
 use self::unit::UnitPages;
 use self::written::{beginning, write_page, write_units};
 

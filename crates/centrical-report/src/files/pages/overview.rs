@@ -1,7 +1,7 @@
-//! What is found of a whole store: its list, its models of units, its stations.
+//! What is asked of pages, and what is found of a whole store: its list, its models of units, its stations.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use centrical_session::{
     Calibrated, ChartLimits, ChartRequest, ComparedUnits, Date, Depth, Error, HistoryLine, HistoryList, OnProgress,
@@ -10,11 +10,36 @@ use centrical_session::{
 };
 use rayon::prelude::*;
 
-use super::request::PagesRequest;
 use crate::render::{
     IndexedModel, IndexedStation, ListedUnit, PageKind, StoreCharts, due_of_page, history_due_page, history_index,
     history_model_page, history_station_page,
 };
+
+/// What the pages of a store show beside its calibrations.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PagesRequest {
+    /// Largest error of a compensated reading [m/s^2], for the due dates.
+    pub limit: Option<f64>,
+    /// A laboratory's file with limits of parameters, for capability and drawings.
+    pub laboratory: Option<PathBuf>,
+    /// A table of serial numbers and batches.
+    pub batches: Option<PathBuf>,
+    /// Acceptable sessions whose values give the limits of control charts.
+    pub accepted: usize,
+}
+
+impl PagesRequest {
+    /// The files that are read.
+    pub(super) fn inputs(&self) -> Vec<&Path> {
+        self.laboratory.iter().chain(&self.batches).map(PathBuf::as_path).collect()
+    }
+}
+
+impl Default for PagesRequest {
+    fn default() -> Self {
+        Self { limit: None, laboratory: None, batches: None, accepted: 20 }
+    }
+}
 
 /// Name of the list of due dates.
 pub const DUE_PAGE: &str = "due.html";

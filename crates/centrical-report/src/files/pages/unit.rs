@@ -8,8 +8,7 @@ use centrical_session::{
     read_calibrations, sha256, unit_history, unwatched,
 };
 
-use super::overview::{Overview, charts};
-use super::request::PagesRequest;
+use super::overview::{Overview, PagesRequest, charts};
 use crate::render::{due_comment, history_unit_page, no_unit_history_page};
 
 /// The units that have a page.
