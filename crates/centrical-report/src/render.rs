@@ -7,7 +7,6 @@ mod html;
 mod live;
 mod pdf;
 mod results;
-mod screen;
 
 pub use self::history::{
     IndexedModel, IndexedStation, ListedUnit, PageKind, StoreCharts, due_comment, due_of_page, history_due_page,

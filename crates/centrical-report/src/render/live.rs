@@ -4,7 +4,8 @@ use std::fmt::Write;
 
 use centrical_session::{Agreement, HistoryEntry, LivePlateau, LiveReport, LiveStatus, PlateauLabel, rpm};
 
-use super::frame::head;
+use super::frame::Column::{Number, Words};
+use super::frame::{head, titles};
 use crate::document::rival;
 use crate::evaluation::expanded_of_normal;
 use crate::figure::{Figure, live_readings_figure, live_speeds_figure, live_uncertainties_figure};
@@ -249,13 +250,15 @@ impl Panel<'_> {
     fn uncertainties(&self, out: &mut String) -> std::fmt::Result {
         let words = self.words;
         open(out, "uncertainties", words.uncertainties)?;
-        write!(
-            out,
-            "<div class=\"scroll\"><table><thead><tr><th scope=\"col\">{}</th><th scope=\"col\">{}</th>\
-             <th scope=\"col\" class=\"number\">{}</th><th scope=\"col\" class=\"number\">{}</th>\
-             <th scope=\"col\" class=\"number\">{}</th><th scope=\"col\" class=\"number\">{}</th></tr></thead><tbody>",
-            words.group, self.messages.unit, words.determined, words.largest, words.target, words.with_next
-        )?;
+        let columns = [
+            Words(words.group),
+            Words(self.messages.unit),
+            Number(words.determined),
+            Number(words.largest),
+            Number(words.target),
+            Number(words.with_next),
+        ];
+        write!(out, "<div class=\"scroll\"><table><thead><tr>{}</tr></thead><tbody>", titles(&columns))?;
         let shown = |u: Option<f64>| u.map_or("—".to_owned(), |u| self.language.number(&two_digits(u)));
         let raw = |u: Option<f64>| u.map_or(String::new(), |u| u.to_string());
         for row in &self.live.groups {
@@ -341,12 +344,9 @@ impl Panel<'_> {
         if measured.is_empty() {
             return writeln!(out, "<p>{}</p></section>", words.no_speeds);
         }
-        write!(
-            out,
-            "<div class=\"scroll\"><table><thead><tr><th scope=\"col\">{}</th><th scope=\"col\" class=\"number\">{}</th>\
-             <th scope=\"col\" class=\"number\">{}</th><th scope=\"col\" class=\"number\">{}</th></tr></thead><tbody>",
-            words.plateau, words.set_speed, words.measured, words.deviation
-        )?;
+        let columns = [Words(words.plateau), Number(words.set_speed), Number(words.measured), Number(words.deviation)];
+        let titles = titles(&columns);
+        write!(out, "<div class=\"scroll\"><table><thead><tr>{titles}</tr></thead><tbody>")?;
         for (speed, deviation) in measured.iter().rev().take(LAST_SPEEDS) {
             let (set, found) = (speed.plateau.omega.abs(), speed.measured.abs());
             write!(

@@ -4,8 +4,8 @@ use std::fmt::Write;
 
 use centrical_session::{CalibrationResult, ComparisonReport};
 
+use super::frame::{Column, shown, titles};
 use super::live::{languages, served};
-use super::screen::shown;
 use crate::figure::comparison_plot;
 use crate::language::Language;
 use crate::plot::Escaped;
@@ -35,12 +35,12 @@ pub fn results_page(title: &str, results: &[ListedResult], has_live: bool, langu
     if has_live {
         let _ = writeln!(body, "<p><a href=\"/live?lang={code}\">{}</a></p>", words.live);
     }
+    let columns = [words.compare, messages.date, words.model, words.serial, words.verdict, messages.file];
     let _ = write!(
         body,
         "<form action=\"/compare\"><input type=\"hidden\" name=\"lang\" value=\"{code}\"><div class=\"scroll\"><table id=\"list\">\
-         <thead><tr><th scope=\"col\">{}</th><th scope=\"col\">{}</th><th scope=\"col\">{}</th><th scope=\"col\">{}</th>\
-         <th scope=\"col\">{}</th><th scope=\"col\">{}</th></tr></thead><tbody>",
-        words.compare, messages.date, words.model, words.serial, words.verdict, messages.file
+         <thead><tr>{}</tr></thead><tbody>",
+        titles(&columns.map(Column::Words))
     );
     for listed in results {
         let _ = row(&mut body, listed, language);
