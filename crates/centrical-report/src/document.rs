@@ -25,6 +25,7 @@ pub(crate) use self::drift::{
 pub use self::objection::objection;
 pub(crate) use self::objection::rival;
 pub use self::report::report;
+pub(crate) use self::report::speeds;
 pub(crate) use self::rests_on::{counts_as_exact, presuppositions, rests_on_sentence};
 pub(crate) use self::switch_on::switch_on_sentence;
 pub(crate) use self::tables::serial;

@@ -21,7 +21,7 @@ mod svg;
 
 pub(crate) use self::draw::STYLE;
 pub use self::series::{Axis, Plot, Point, Series};
-pub(crate) use self::svg::{Escaped, Px};
+pub(crate) use self::svg::{Escaped, Px, opened};
 
 impl Plot {
     /// The plot as an SVG element; the same plot gives the same bytes.

@@ -132,7 +132,7 @@ fn statements(xml: &mut Xml, result: &CalibrationResult, issuer: &Issuer, langua
         statement(xml, "7.8.2.1", messages.reproduction);
         statement(xml, "7.8.4.1 c", messages.traceability_text);
         if let Some(unit) = &issuer.unit {
-            xml.element_with("dcc:statement", &[("refType", "basic_conformity")], |xml| {
+            xml.kind("dcc:statement", "basic_conformity", |xml| {
                 xml.leaf("dcc:norm", &unit.specification);
                 xml.content(
                     "dcc:declaration",

@@ -2,8 +2,7 @@
 //! errors.
 
 use centrical_session::{
-    AxesParameter, CalibrationResult, Condition, Laboratory, OutputSummary, OutputUnit, ParameterEstimate, Symbol,
-    Unit, UnknownUnit,
+    CalibrationResult, Condition, Laboratory, OutputSummary, OutputUnit, ParameterEstimate, Symbol, Unit, UnknownUnit,
 };
 use nalgebra::Vector3;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
@@ -55,7 +54,7 @@ fn methods(xml: &mut Xml, result: &CalibrationResult, laboratory: &Laboratory, l
             xml.content("dcc:description", &text, language);
             xml.optional("dcc:reference", laboratory.method.procedure.as_deref());
         });
-        xml.element_with("dcc:usedMethod", &[("refType", "basic_methodMeasurementUncertainty")], |xml| {
+        xml.kind("dcc:usedMethod", "basic_methodMeasurementUncertainty", |xml| {
             xml.content("dcc:name", messages.uncertainty, language);
             xml.content("dcc:description", messages.uncertainty_statement, language);
             xml.leaf("dcc:norm", "JCGM 100:2008");
@@ -100,28 +99,28 @@ fn influences(xml: &mut Xml, result: &CalibrationResult, laboratory: &Laboratory
             let Some((Condition { value, range }, offset, factor, unit)) = condition else { continue };
             influence(xml, (kind, name), language, |xml| {
                 for (end, bound) in [("Min", value - range), ("Max", value + range)] {
-                    xml.element_with("dcc:quantity", &[("refType", &format!("{kind}{end}"))], |xml| {
+                    xml.kind("dcc:quantity", &format!("{kind}{end}"), |xml| {
                         real(xml, converted(bound * factor + offset), unit, None);
                     });
                 }
             });
         }
-        influence(xml, ("centrical_gravity", messages.gravity), language, |xml| {
-            xml.element_with("dcc:quantity", &[("refType", "centrical_gravity")], |xml| {
-                real(xml, result.model.gravity, &Unit::ACCELERATION.d_si(), None);
-            });
-        });
-        if result.model.has_arm() {
-            influence(xml, ("centrical_speedUncertainty", messages.speed_uncertainty), language, |xml| {
-                let kind = [("refType", "centrical_speedUncertainty")];
-                xml.element_with("dcc:quantity", &kind, |xml| real(xml, result.model.speed_uncertainty, "\\one", None));
+        let speed = result.model.has_arm().then_some(result.model.speed_uncertainty);
+        let numbers = [
+            ("centrical_gravity", messages.gravity, Some(result.model.gravity), &*Unit::ACCELERATION.d_si()),
+            ("centrical_speedUncertainty", messages.speed_uncertainty, speed, "\\one"),
+        ];
+        for (kind, name, value, unit) in numbers {
+            let Some(value) = value else { continue };
+            influence(xml, (kind, name), language, |xml| {
+                xml.kind("dcc:quantity", kind, |xml| real(xml, value, unit, None));
             });
         }
     });
 }
 
 fn influence(xml: &mut Xml, (kind, name): (&str, &str), language: Language, data: impl FnOnce(&mut Xml)) {
-    xml.element_with("dcc:influenceCondition", &[("refType", kind)], |xml| {
+    xml.kind("dcc:influenceCondition", kind, |xml| {
         xml.content("dcc:name", name, language);
         xml.element("dcc:data", data);
     });
@@ -148,16 +147,24 @@ fn real(xml: &mut Xml, value: f64, unit: &str, expanded: Option<Expanded>) {
     });
 }
 
+/// Numbers of one unit.
+fn real_list(xml: &mut Xml, values: &[String], unit: &str) {
+    xml.element("si:realListXMLList", |xml| {
+        xml.leaf("si:valueXMLList", &values.join(" "));
+        xml.leaf("si:unitXMLList", unit);
+    });
+}
+
 fn parameters(xml: &mut Xml, result: &CalibrationResult, units: &[Unit], language: Language) {
     let messages = language.messages();
-    xml.element_with("dcc:result", &[("refType", "centrical_parameters")], |xml| {
+    xml.kind("dcc:result", "centrical_parameters", |xml| {
         xml.content("dcc:name", messages.parameters, language);
         xml.content("dcc:description", &equation(result), language);
         xml.element("dcc:data", |xml| {
             xml.element("dcc:list", |xml| {
                 for (parameter, unit) in result.parameters.iter().zip(units) {
                     let kind = format!("basic_measuredValue centrical_{}", camel_case(parameter.group.name()));
-                    xml.element_with("dcc:quantity", &[("refType", &kind)], |xml| {
+                    xml.kind("dcc:quantity", &kind, |xml| {
                         one_parameter(xml, result, (parameter, *unit), language);
                     });
                 }
@@ -179,9 +186,7 @@ fn camel_case(words: &str) -> String {
 /// The nominal scale and bias of a unit that does not put out an acceleration.
 fn nominal(xml: &mut Xml, result: &CalibrationResult, language: Language) {
     let messages = language.messages();
-    let Some(OutputSummary { unit, scale, bias }) = result.raw_output() else {
-        return;
-    };
+    let Some(OutputSummary { unit, scale, bias }) = result.raw_output() else { return };
     // Counts are a number; what has no symbol in D-SI is named in words alone.
     let raw = if OutputUnit::named(unit) == OutputUnit::Counts {
         Some("")
@@ -191,7 +196,7 @@ fn nominal(xml: &mut Xml, result: &CalibrationResult, language: Language) {
     let Some(raw) = raw else { return };
     let per_force = format!("{raw}\\metre\\tothe{{-1}}\\second\\tothe{{2}}");
     let raw = if raw.is_empty() { "\\one" } else { raw };
-    xml.element_with("dcc:result", &[("refType", "centrical_nominalOutput")], |xml| {
+    xml.kind("dcc:result", "centrical_nominalOutput", |xml| {
         xml.content("dcc:name", messages.nominal_output, language);
         xml.content("dcc:description", messages.nominal_output_text, language);
         xml.element("dcc:data", |xml| {
@@ -200,12 +205,9 @@ fn nominal(xml: &mut Xml, result: &CalibrationResult, language: Language) {
                 ("centrical_nominalBias", messages.nominal_bias, bias, raw),
             ];
             for (kind, name, numbers, unit) in rows {
-                xml.element_with("dcc:quantity", &[("refType", &format!("basic_nominalValue {kind}"))], |xml| {
+                xml.kind("dcc:quantity", &format!("basic_nominalValue {kind}"), |xml| {
                     xml.content("dcc:name", name, language);
-                    xml.element("si:realListXMLList", |xml| {
-                        xml.leaf("si:valueXMLList", &numbers.map(number).join(" "));
-                        xml.leaf("si:unitXMLList", unit);
-                    });
+                    real_list(xml, &numbers.map(number), unit);
                 });
             }
         });
@@ -235,10 +237,10 @@ fn covariance(xml: &mut Xml, result: &CalibrationResult, units: &[Unit], languag
     if shown.is_empty() {
         return;
     }
-    xml.element_with("dcc:result", &[("refType", "centrical_covariance")], |xml| {
+    xml.kind("dcc:result", "centrical_covariance", |xml| {
         xml.content("dcc:name", language.messages().covariance, language);
         xml.element("dcc:data", |xml| {
-            xml.element_with("dcc:quantity", &[("refType", "centrical_parameterVector")], |xml| {
+            xml.kind("dcc:quantity", "centrical_parameterVector", |xml| {
                 let quantity = |j: usize| (all[j].name.as_str(), all[j].value.unwrap_or(f64::NAN), units[j]);
                 let quantities: Vec<_> = shown.iter().map(|&j| quantity(j)).collect();
                 vector(xml, &quantities, &|i, j| result.covariance[shown[i]][shown[j]].unwrap_or(f64::NAN));
@@ -251,22 +253,17 @@ fn covariance(xml: &mut Xml, result: &CalibrationResult, units: &[Unit], languag
 fn other_axes(xml: &mut Xml, result: &CalibrationResult, language: Language) -> Result<(), UnknownUnit> {
     let messages = language.messages();
     let Some(axes) = &result.axes else { return Ok(()) };
-    let quantity = |p: &'_ AxesParameter| Ok((p.name.clone(), p.value, Unit::parse(&p.unit)?));
-    let quantities = axes.parameters.iter().map(quantity).collect::<Result<Vec<_>, _>>()?;
-    let quantities: Vec<_> = quantities.iter().map(|(name, value, unit)| (name.as_str(), *value, *unit)).collect();
-    let [first, second, third] = axes.matrix.map(|row| row.map(number).join(" "));
-    xml.element_with("dcc:result", &[("refType", "centrical_otherAxes")], |xml| {
+    let quantities = axes.parameters.iter().map(|p| Ok((p.name.as_str(), p.value, Unit::parse(&p.unit)?)));
+    let quantities = quantities.collect::<Result<Vec<_>, _>>()?;
+    xml.kind("dcc:result", "centrical_otherAxes", |xml| {
         xml.content("dcc:name", &format!("{}: {}", messages.axes, (messages.words.axes)(&axes.name)), language);
         xml.content("dcc:description", messages.axes_text, language);
         xml.element("dcc:data", |xml| {
-            xml.element_with("dcc:quantity", &[("refType", "centrical_rotationMatrix")], |xml| {
+            xml.kind("dcc:quantity", "centrical_rotationMatrix", |xml| {
                 xml.content("dcc:name", messages.axes_matrix, language);
-                xml.element("si:realListXMLList", |xml| {
-                    xml.leaf("si:valueXMLList", &[first, second, third].join(" "));
-                    xml.leaf("si:unitXMLList", "\\one");
-                });
+                real_list(xml, axes.matrix.map(|row| row.map(number)).as_flattened(), "\\one");
             });
-            xml.element_with("dcc:quantity", &[("refType", "centrical_parameterVector")], |xml| {
+            xml.kind("dcc:quantity", "centrical_parameterVector", |xml| {
                 vector(xml, &quantities, &|i, j| axes.covariance[i][j]);
             });
         });
@@ -319,20 +316,17 @@ fn ellipsoid_factor(dimension: usize) -> String {
 fn errors(xml: &mut Xml, result: &CalibrationResult, language: Language) {
     let messages = language.messages();
     let Some(errors) = reading_errors(result).filter(|errors| !errors.is_empty()) else { return };
-    xml.element_with("dcc:result", &[("refType", "centrical_readingErrors")], |xml| {
+    xml.kind("dcc:result", "centrical_readingErrors", |xml| {
         xml.content("dcc:name", messages.residual_error, language);
         xml.element("dcc:data", |xml| {
             for axis in 0..3 {
                 xml.element("dcc:list", |xml| {
                     xml.content("dcc:name", &format!("{} {}", messages.axis, axis + 1), language);
                     let mut column = |kind: &str, name: &str, of: fn(&ReadingError) -> Vector3<f64>| {
-                        xml.element_with("dcc:quantity", &[("refType", kind)], |xml| {
+                        xml.kind("dcc:quantity", kind, |xml| {
                             xml.content("dcc:name", name, language);
-                            xml.element("si:realListXMLList", |xml| {
-                                let values: Vec<String> = errors.iter().map(|error| number(of(error)[axis])).collect();
-                                xml.leaf("si:valueXMLList", &values.join(" "));
-                                xml.leaf("si:unitXMLList", &Unit::ACCELERATION.d_si());
-                            });
+                            let values: Vec<String> = errors.iter().map(|error| number(of(error)[axis])).collect();
+                            real_list(xml, &values, &Unit::ACCELERATION.d_si());
                         });
                     };
                     column("basic_referenceValue centrical_specificForce", messages.specific_force, |e| e.force);

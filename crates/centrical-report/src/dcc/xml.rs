@@ -36,6 +36,11 @@ impl Xml {
         let _ = writeln!(self.text, "</{name}>");
     }
 
+    /// An element of a kind, as its `refType` says, with children.
+    pub fn kind(&mut self, name: &str, kind: &str, children: impl FnOnce(&mut Self)) {
+        self.element_with(name, &[("refType", kind)], children);
+    }
+
     /// An element that holds text alone.
     pub fn leaf(&mut self, name: &str, text: &str) {
         self.indent();

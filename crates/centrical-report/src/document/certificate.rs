@@ -9,7 +9,7 @@ use super::axes::axes;
 use super::conformity::{conformity_table, rule};
 use super::content::{Align, Block, Document, Margins, Opening, Picture, Section, Table};
 use super::drift::drift;
-use super::objection::objection;
+use super::objection::{objection, refusal};
 use super::reading_error::{error_note, error_table};
 use super::rests_on::{counts_as_exact, presuppositions};
 use super::switch_on::switch_on;
@@ -90,12 +90,8 @@ pub fn certificate(
 
 /// The objections to the result, before anything else.
 fn warning(result: &CalibrationResult, language: Language) -> Vec<Block> {
-    let (messages, objections) = (language.messages(), result.objections());
-    if objections.is_empty() {
-        return Vec::new();
-    }
-    let reasons = objections.iter().map(|reason| objection(reason, language)).collect();
-    vec![Block::heading(messages.not_acceptable, 4), Block::paragraph(messages.verdict_bad), Block::List(reasons)]
+    let objections = result.objections();
+    if objections.is_empty() { Vec::new() } else { refusal(&objections, language) }
 }
 
 /// 7.8.2.1 a, b, d, e.

@@ -4,6 +4,7 @@ use centrical::uncertainty::{Level, Objection};
 use centrical::{Extension, Rival};
 use centrical_session::{Follows, MICRO_G, PatternSummary, ResultObjection, RivalSummary};
 
+use super::content::Block;
 use crate::language::Language;
 
 /// Rivals that a sentence names beside the first.
@@ -47,6 +48,13 @@ pub fn objection(objection: &ResultObjection, language: Language) -> String {
         }
         Objection::NotDetermined(names) => format!("{}: {}", messages.lost_parameters, names.join(", ")),
     }
+}
+
+/// That a result must not be used as it stands, and why.
+pub(super) fn refusal(objections: &[ResultObjection], language: Language) -> Vec<Block> {
+    let messages = language.messages();
+    let reasons = objections.iter().map(|reason| objection(reason, language)).collect();
+    vec![Block::heading(messages.not_acceptable, 4), Block::paragraph(messages.verdict_bad), Block::List(reasons)]
 }
 
 /// A chi^2 with its degrees of freedom, and the probability of one as large.

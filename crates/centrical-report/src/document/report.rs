@@ -7,7 +7,7 @@ use super::axes::axes;
 use super::conformity::{judged_in_words, rule};
 use super::content::{Align, Block, Document, Fact, Margins, Opening, Section, Table, TableKind, Tone};
 use super::drift::drift;
-use super::objection::{objection, pattern, rival};
+use super::objection::{pattern, refusal, rival};
 use super::reading_error::{error_note, error_table, headline_table};
 use super::rests_on::{all_rests_on, rests_on};
 use super::switch_on::switch_on;
@@ -87,9 +87,7 @@ fn verdicts(result: &CalibrationResult, unit: Option<&UnitStatement>, language: 
     let mut blocks = if objections.is_empty() {
         vec![Block::heading(messages.acceptable, 4), Block::paragraph(good)]
     } else {
-        let reasons = objections.iter().map(|reason| objection(reason, language)).collect();
-        let heading = Block::heading(messages.not_acceptable, 4);
-        vec![heading, Block::paragraph(messages.verdict_bad), Block::List(reasons)]
+        refusal(&objections, language)
     };
     if result.chi_squared_is_small() {
         blocks.push(Block::paragraph(messages.chi_squared_small));
@@ -250,7 +248,7 @@ fn conduct(result: &CalibrationResult, language: Language) -> Vec<Block> {
         (messages.pair_relation, of_arm((words.pair_relation)(model.pair_relation).to_owned())),
         (messages.reference, of_arm((words.reference)(model.reference).to_owned())),
         (messages.speed_uncertainty, of_arm(language.scientific(model.speed_uncertainty))),
-        (messages.speeds, of_arm(speeds(result, language))),
+        (messages.speeds, of_arm(speeds(result, language).join("; "))),
         (messages.data, data),
         (messages.held_out_plateaus, result.held_out().join(", ")),
         (messages.method, method),
@@ -260,13 +258,12 @@ fn conduct(result: &CalibrationResult, language: Language) -> Vec<Block> {
     [Block::heading(messages.session, 4), facts].into_iter().chain(text).collect()
 }
 
-/// How the speeds are known and what contradicts them; empty where they are set and nothing does.
-fn speeds(result: &CalibrationResult, language: Language) -> String {
+/// How the speeds are known and what contradicts them; nothing where they are set and nothing does.
+pub(crate) fn speeds(result: &CalibrationResult, language: Language) -> Vec<String> {
     let words = &language.messages().words;
-    let Some(speeds) = &result.speeds else { return String::new() };
+    let Some(speeds) = &result.speeds else { return Vec::new() };
     let measured = speeds.measured_by.as_ref().map(|_| (words.speeds_measured)(speeds));
-    let found = speeds.findings.iter().map(words.speed_finding);
-    measured.into_iter().chain(found).collect::<Vec<_>>().join("; ")
+    measured.into_iter().chain(speeds.findings.iter().map(words.speed_finding)).collect()
 }
 
 /// The coefficients of the error model.

@@ -7,7 +7,7 @@ use centrical_session::CalibrationResult;
 use super::drawing::{Figure, is_charted};
 use crate::evaluation::symbol;
 use crate::language::Language;
-use crate::plot::{Escaped, Px};
+use crate::plot::{Escaped, Px, opened};
 
 const WIDTH: f64 = 760.0;
 /// Room for the names on the left, above the map, and below it for the key.
@@ -42,16 +42,9 @@ fn correlation(result: &CalibrationResult, i: usize, j: usize) -> Option<f64> {
 }
 
 fn draw(result: &CalibrationResult, shown: &[usize], language: Language) -> String {
-    let title = Escaped(language.messages().correlation_title);
     let cell = (WIDTH - LEFT - RIGHT) / shown.len() as f64;
     let (side, height) = (cell * shown.len() as f64, TOP + WIDTH - LEFT - RIGHT + BOTTOM);
-    let mut svg = format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"map\" role=\"img\" viewBox=\"0 0 {WIDTH} {}\" \
-         aria-label=\"{title}\"><style>{STYLE}</style><rect class=\"ground\" width=\"{WIDTH}\" height=\"{}\"/>\
-         <text class=\"title\" x=\"{LEFT}\" y=\"26\">{title}</text>",
-        Px(height),
-        Px(height)
-    );
+    let mut svg = opened("map", STYLE, (WIDTH, height), language.messages().correlation_title, (LEFT, 26.0));
     // Names as high as their rows, as many as fit.
     let every = (9.0 / cell).ceil().max(1.0);
     for (row, &i) in shown.iter().enumerate() {

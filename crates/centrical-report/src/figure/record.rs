@@ -7,7 +7,7 @@ use centrical_session::{CalibrationResult, PlateauSummary, RecordOverview};
 
 use super::drawing::Figure;
 use crate::language::Language;
-use crate::plot::{Escaped, Px};
+use crate::plot::{Px, opened};
 
 const WIDTH: f64 = 420.0;
 const HEIGHT: f64 = 190.0;
@@ -63,13 +63,7 @@ impl Frame {
 fn draw(result: &CalibrationResult, record: &RecordOverview, language: Language) -> String {
     let messages = language.messages();
     let frame = Frame::of(record);
-    let title = heading(result, record, language);
-    let mut svg = format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"strip\" role=\"img\" viewBox=\"0 0 {WIDTH} {HEIGHT}\" \
-         aria-label=\"{0}\"><style>{STYLE}</style><rect class=\"ground\" width=\"{WIDTH}\" height=\"{HEIGHT}\"/>\
-         <text class=\"title\" x=\"8\" y=\"18\">{0}</text>",
-        Escaped(&title)
-    );
+    let mut svg = opened("strip", STYLE, (WIDTH, HEIGHT), &heading(result, record, language), (8.0, 18.0));
     for axis in 1..=3_u8 {
         let x = WIDTH - RIGHT - 27.0 * f64::from(4 - axis) + 4.0;
         let _ = write!(

@@ -22,6 +22,16 @@ impl Display for Escaped<'_> {
     }
 }
 
+/// The beginning of a drawing on a ground, with its title at a place and a style of its own.
+pub(crate) fn opened(class: &str, style: &str, size: (f64, f64), title: &str, place: (f64, f64)) -> String {
+    let (width, height, x, y, title) = (Px(size.0), Px(size.1), Px(place.0), Px(place.1), Escaped(title));
+    format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"{class}\" role=\"img\" viewBox=\"0 0 {width} {height}\" \
+         aria-label=\"{title}\"><style>{style}</style><rect class=\"ground\" width=\"{width}\" height=\"{height}\"/>\
+         <text class=\"title\" x=\"{x}\" y=\"{y}\">{title}</text>"
+    )
+}
+
 /// A length in pixels, to a tenth, held within what renderers draw.
 pub(crate) struct Px(pub(crate) f64);
 

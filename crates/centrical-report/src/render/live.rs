@@ -161,7 +161,7 @@ impl Panel<'_> {
              <progress max=\"{all}\" value=\"{arrived}\" aria-label=\"{}\"></progress><dl>",
             self.messages.of, words.plateaus
         )?;
-        fact(out, words.mounting, &format!("{} {} {}", live.mounting, self.messages.of, live.mountings))?;
+        fact(out, self.messages.mounting_word, &format!("{} {} {}", live.mounting, self.messages.of, live.mountings))?;
         let ends = match live.ends {
             _ if live.next.is_none() && arrived > 0 => None,
             Some(ends) => Some(format!("<time data-seconds=\"{ends:.0}\">{}</time>", clock(ends))),

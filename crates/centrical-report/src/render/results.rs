@@ -27,7 +27,7 @@ pub fn results_page(title: &str, results: &[ListedResult], has_live: bool, langu
     let (words, messages) = (language.live(), language.messages());
     let mut body = format!(
         "<header><p class=\"kind\">{}</p><h1>{}</h1><nav class=\"languages\">{}</nav></header>\n",
-        words.results,
+        messages.results,
         Escaped(title),
         languages(language)
     );
@@ -35,7 +35,7 @@ pub fn results_page(title: &str, results: &[ListedResult], has_live: bool, langu
     if has_live {
         let _ = writeln!(body, "<p><a href=\"/live?lang={code}\">{}</a></p>", words.live);
     }
-    let columns = [words.compare, messages.date, words.model, words.serial, words.verdict, messages.file];
+    let columns = [words.compare, messages.date, messages.model, words.serial, words.verdict, messages.file];
     let _ = write!(
         body,
         "<form action=\"/compare\"><input type=\"hidden\" name=\"lang\" value=\"{code}\"><div class=\"scroll\"><table id=\"list\">\
@@ -115,6 +115,6 @@ fn compared_header(class: &str, verdict: &str, language: Language) -> String {
         "<header><p class=\"kind\">{}</p><h1 class=\"{class}\">{verdict}</h1><p><a href=\"/?lang={}\">{}</a></p></header>\n",
         words.differences,
         language.code(),
-        words.results
+        language.messages().results
     )
 }

@@ -12,7 +12,7 @@ use super::rests::rests;
 use super::rests_on::{priors as prior_table, rests_on_text};
 use super::screen::Screen;
 use super::table::{Align, Cell, Table};
-use crate::document::rival;
+use crate::document::{rival, speeds};
 use crate::evaluation::{ParameterName, combination, monomial};
 use crate::language::Language;
 use crate::number::counted;
@@ -33,7 +33,7 @@ pub(super) fn table_of(result: &CalibrationResult) -> Screen {
     priors(&mut screen, result);
     plateaus(&mut screen, result);
     drift(&mut screen, result);
-    speeds(&mut screen, result);
+    known_speeds(&mut screen, result);
     fit(&mut screen, result);
     uncertainties(&mut screen, result);
     validity(&mut screen, result);
@@ -259,13 +259,9 @@ fn plateaus(screen: &mut Screen, result: &CalibrationResult) {
 }
 
 /// How the speeds are known, where they are measured or contradicted.
-fn speeds(screen: &mut Screen, result: &CalibrationResult) {
-    let Some(speeds) = &result.speeds else { return };
-    let words = &Language::English.messages().words;
-    let measured = speeds.measured_by.as_ref().map(|_| (words.speeds_measured)(speeds));
-    let found = speeds.findings.iter().map(words.speed_finding);
-    for (n, line) in measured.into_iter().chain(found).enumerate() {
-        screen.fact(if n == 0 { "SPEED" } else { "" }, &line);
+fn known_speeds(screen: &mut Screen, result: &CalibrationResult) {
+    for (n, line) in speeds(result, Language::English).iter().enumerate() {
+        screen.fact(if n == 0 { "SPEED" } else { "" }, line);
     }
 }
 
