@@ -56,15 +56,13 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
 /// What remains to be done.
 fn summary(file: &Path, draft: &Draft) -> Screen {
     let mut screen = Screen::default();
-    screen.say(
-        0,
-        &format!(
-            "Written to {}. Guesses to check: {}. Lines to fill in: {}",
-            file.display(),
-            draft.guesses,
-            draft.fill_in.len()
-        ),
+    let text = format!(
+        "Written to {}. Guesses to check: {}. Lines to fill in: {}",
+        file.display(),
+        draft.guesses,
+        draft.fill_in.len()
     );
+    screen.say(0, &text);
     for entry in &draft.fill_in {
         screen.say(2, &format!("line {}: {}: {}", entry.line, entry.key, entry.reason));
     }

@@ -13,7 +13,7 @@ use super::objection::{objection, refusal};
 use super::reading_error::{error_note, error_table};
 use super::rests_on::{counts_as_exact, presuppositions};
 use super::switch_on::switch_on;
-use super::tables::{by_group, nominal_output, of_arm, rows_by_group, serial};
+use super::tables::{coefficients, nominal_output, of_arm, rows_by_group, serial};
 use crate::evaluation::{UnitStatement, equations, expanded, symbol};
 use crate::language::Language;
 
@@ -225,7 +225,6 @@ fn traceability(laboratory: &Laboratory, language: Language) -> Vec<Block> {
 /// 7.8.2.1 m and 7.8.4.1 a; EA-4/02, 6.3.
 fn results(result: &CalibrationResult, language: Language) -> Vec<Block> {
     let messages = language.messages();
-    let terms: Vec<_> = result.model.error_model.iter().filter_map(|term| result.parameter(&term.name)).collect();
     let columns = [
         ("", 0.1, Align::Left),
         (messages.value, 0.26, Align::Right),
@@ -234,7 +233,7 @@ fn results(result: &CalibrationResult, language: Language) -> Vec<Block> {
         (messages.value_si, 0.3, Align::Right),
         ("", 0.1, Align::Left),
     ];
-    let rows = rows_by_group(result, &by_group(&terms), language);
+    let rows = rows_by_group(result, &coefficients(result), language);
     let table = Table { rows, ..Table::numbers(columns, []) };
     let mut blocks = vec![Block::heading(messages.results, 14), Block::paragraph(messages.results_model)];
     blocks.extend(equations(result).map(Block::Paragraph));
@@ -287,13 +286,12 @@ fn calibration_before(before: &CalibrationResult, language: Language) -> String 
 /// The parameters of the instrument before its adjustment and after.
 fn results_before(result: &CalibrationResult, before: &CalibrationResult, language: Language) -> Table {
     let messages = language.messages();
-    let terms: Vec<_> = result.model.error_model.iter().filter_map(|term| result.parameter(&term.name)).collect();
     let shown = |result: &CalibrationResult, name: &str, factor: f64| {
         let estimate = result.parameter(name).and_then(|p| Some((p.value?, expanded(result, p)?.uncertainty)));
         let known = |(value, expanded)| language.plus_minus(value * factor, expanded * factor);
         estimate.map_or_else(|| messages.not_determined.to_owned(), known)
     };
-    let rows = by_group(&terms).into_iter().map(|after| {
+    let rows = coefficients(result).into_iter().map(|after| {
         let (factor, unit) = customary(&after.unit, after.group);
         let [was, is] = [before, result].map(|result| shown(result, &after.name, factor));
         vec![symbol(&after.name), was, is, language.unit(unit)]

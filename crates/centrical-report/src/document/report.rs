@@ -1,7 +1,6 @@
 //! The report of a calibration: verdict, session, parameters, budget, figures.
 
-use centrical::Group;
-use centrical_session::{CalibrationResult, UnitHistoryReport, ValiditySummary};
+use centrical_session::{CalibrationResult, ParameterEstimate, UnitHistoryReport, ValiditySummary};
 
 use super::axes::axes;
 use super::conformity::{judged_in_words, rule};
@@ -11,7 +10,7 @@ use super::objection::{pattern, refusal, rival};
 use super::reading_error::{error_note, error_table, headline_table};
 use super::rests_on::{all_rests_on, rests_on};
 use super::switch_on::switch_on;
-use super::tables::{budget, by_group, nominal_output, of_arm, parameters, serial};
+use super::tables::{budget, by_group, coefficients, nominal_output, of_arm, parameters, serial};
 use crate::evaluation::{UnitStatement, UnitVerdict, equations, symbol};
 use crate::figure::{Figure, positions};
 use crate::language::Language;
@@ -157,15 +156,11 @@ fn error_model(result: &CalibrationResult, language: Language) -> Vec<Block> {
 
 /// Every coefficient of the error model by its group, with what it is.
 fn symbols(result: &CalibrationResult, language: Language) -> Vec<Fact> {
-    let messages = language.messages();
-    let mut groups: Vec<(Group, Vec<String>)> = Vec::new();
-    for parameter in result.model.error_model.iter().filter_map(|term| result.parameter(&term.name)) {
-        match groups.iter_mut().find(|(group, _)| *group == parameter.group) {
-            Some((_, names)) => names.push(symbol(&parameter.name)),
-            None => groups.push((parameter.group, vec![symbol(&parameter.name)])),
-        }
-    }
-    groups.into_iter().map(|(group, names)| (names.join(", "), (messages.words.meaning)(group).to_owned())).collect()
+    let named = |of: &[&ParameterEstimate]| {
+        let names: Vec<String> = of.iter().map(|parameter| symbol(&parameter.name)).collect();
+        (names.join(", "), (language.messages().words.meaning)(of[0].group).to_owned())
+    };
+    coefficients(result).chunk_by(|a, b| a.group == b.group).map(named).collect()
 }
 
 /// Errors of the readings in full.

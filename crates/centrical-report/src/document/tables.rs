@@ -51,6 +51,11 @@ pub(super) fn by_group<'p>(parameters: &[&'p ParameterEstimate]) -> Vec<&'p Para
     sorted
 }
 
+/// The coefficients of the error model, by group.
+pub(super) fn coefficients(result: &CalibrationResult) -> Vec<&ParameterEstimate> {
+    by_group(&result.model.error_model.iter().filter_map(|term| result.parameter(&term.name)).collect::<Vec<_>>())
+}
+
 /// `axis 1`, `axis 2`, `axis 3`.
 pub(super) fn axis_titles(language: Language) -> [String; 3] {
     [1, 2, 3].map(|axis| format!("{} {axis}", language.messages().axis))

@@ -88,17 +88,15 @@ fn improvements(screen: &mut Screen, parameters: &Parameters, budget: &Budget) {
     screen.gap();
     screen.head("WHAT TO IMPROVE FIRST", "for the parameters of the instrument; the most that each source could bring");
     for improvement in budget.improvements(&instrument).iter().filter(|i| i.share >= 0.01) {
-        screen.say(
-            2,
-            &format!(
-                "{}: {:.0} % of the variance; without it uncertainties fall by {:.0} % on average, {} by {:.0} %",
-                improvement.source.name(),
-                100.0 * improvement.share,
-                100.0 * (1.0 - improvement.mean_factor),
-                parameters[improvement.most].name,
-                100.0 * (1.0 - improvement.most_factor)
-            ),
+        let text = format!(
+            "{}: {:.0} % of the variance; without it uncertainties fall by {:.0} % on average, {} by {:.0} %",
+            improvement.source.name(),
+            100.0 * improvement.share,
+            100.0 * (1.0 - improvement.mean_factor),
+            parameters[improvement.most].name,
+            100.0 * (1.0 - improvement.most_factor)
         );
+        screen.say(2, &text);
     }
 }
 
@@ -173,16 +171,14 @@ fn outliers_text(screen: &mut Screen, model: &MeasurementModel, [before, after]:
     for (set_point, probability) in left_out {
         screen.say(2, &format!("{}, probability {probability:.1e}", plateau(model.experiment(), *set_point)));
     }
-    screen.say(
-        2,
-        &format!(
-            "chi^2 {:.1} with {} of freedom before, {:.1} with {} after",
-            before.chi_squared,
-            counted(before.degrees_of_freedom, "degree"),
-            after.chi_squared,
-            after.degrees_of_freedom
-        ),
+    let text = format!(
+        "chi^2 {:.1} with {} of freedom before, {:.1} with {} after",
+        before.chi_squared,
+        counted(before.degrees_of_freedom, "degree"),
+        after.chi_squared,
+        after.degrees_of_freedom
     );
+    screen.say(2, &text);
     let moved = |j: usize| Some((after.value(j)? - before.value(j)?) / after.standard_uncertainty(j)?);
     let mut moves: Vec<(usize, f64)> = (0..model.parameters().len()).filter_map(|j| Some((j, moved(j)?))).collect();
     moves.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));

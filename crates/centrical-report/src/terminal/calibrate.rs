@@ -327,29 +327,25 @@ fn validity(screen: &mut Screen, result: &CalibrationResult) {
     }
     rivals(screen, validity);
     if validity.patterns.is_empty() {
-        screen.fact(
-            "",
-            &format!(
-                "none of {} against speed, position, radius and time in the residuals",
-                counted(validity.patterns_tested, "pattern")
-            ),
+        let text = format!(
+            "none of {} against speed, position, radius and time in the residuals",
+            counted(validity.patterns_tested, "pattern")
         );
+        screen.fact("", &text);
     }
     for pattern in &validity.patterns {
         screen.fact("", &pattern_in_words(pattern));
     }
     if let Some((worst, family_wise)) = validity.worst_mounting() {
-        screen.fact(
-            "",
-            &format!(
-                "each mounting predicted from all others: mounting {} is the worst, chi^2 {:.1} with {}; a worst of {} as \
+        let text = format!(
+            "each mounting predicted from all others: mounting {} is the worst, chi^2 {:.1} with {}; a worst of {} as \
                  large comes by chance with a probability of {family_wise:.3}",
-                worst.mounting,
-                worst.chi_squared,
-                counted(worst.degrees_of_freedom, "degree"),
-                validity.mountings.len()
-            ),
+            worst.mounting,
+            worst.chi_squared,
+            counted(worst.degrees_of_freedom, "degree"),
+            validity.mountings.len()
         );
+        screen.fact("", &text);
     }
 }
 
@@ -363,16 +359,14 @@ fn rivals(screen: &mut Screen, validity: &ValiditySummary) {
         );
     }
     for summary in shown.iter().filter(|summary| summary.explains_most) {
-        screen.fact(
-            "",
-            &format!(
-                "LEFT OUT  {} explains {:.1} of chi^2 by {}, chance {:.1e}",
-                rival(summary, Language::English),
-                summary.chi_squared,
-                summary.degrees_of_freedom,
-                summary.probability
-            ),
+        let text = format!(
+            "LEFT OUT  {} explains {:.1} of chi^2 by {}, chance {:.1e}",
+            rival(summary, Language::English),
+            summary.chi_squared,
+            summary.degrees_of_freedom,
+            summary.probability
         );
+        screen.fact("", &text);
     }
     if let Some(first) = shown.first().and_then(RivalSummary::rival) {
         screen.fact("", &format!("models fits it in full; to have it in the model: {}", changes_for(&[first])));

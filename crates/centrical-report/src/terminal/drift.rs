@@ -76,28 +76,24 @@ fn over_plateaus(screen: &mut Screen, drift: &DriftSummary) {
         .map(|(slope, u)| format!("{slope} ± {u}"))
         .collect();
     let verdict = plateaus_drift(drift, Language::English);
-    screen.fact(
-        "DRIFT",
-        &format!(
-            "over a plateau, mean: {} ug/min; chi^2 {:.1} of {} slopes, {verdict}",
-            shown.join(", "),
-            drift.chi_squared,
-            drift.degrees_of_freedom
-        ),
+    let text = format!(
+        "over a plateau, mean: {} ug/min; chi^2 {:.1} of {} slopes, {verdict}",
+        shown.join(", "),
+        drift.chi_squared,
+        drift.degrees_of_freedom
     );
+    screen.fact("DRIFT", &text);
 }
 
 /// Where slopes of rests follow the change of the reading before.
 fn creep(screen: &mut Screen, drift: &DriftSummary) {
     let Some(creep) = drift.creep.filter(CreepSummary::is_real) else { return };
     let (rate, u) = with_uncertainty(1e6 * creep.rate, 1e6 * creep.standard_uncertainty);
-    screen.fact(
-        "",
-        &format!(
-            "creep after each turn: {rate} ± {u} ppm of the change a second, chance {}",
-            Language::English.probability(creep.probability)
-        ),
+    let text = format!(
+        "creep after each turn: {rate} ± {u} ppm of the change a second, chance {}",
+        Language::English.probability(creep.probability)
     );
+    screen.fact("", &text);
 }
 
 fn over_session(screen: &mut Screen, drift: &DriftSummary) {
@@ -121,13 +117,11 @@ fn repeats(screen: &mut Screen, drift: &DriftSummary) {
     let [first, second] = worst.indices.map(|index| index + 1);
     let messages = Language::English.messages();
     let verdict = if differ { messages.differ } else { messages.no_difference };
-    screen.fact(
-        "",
-        &format!(
-            "plateaus run again: {count}; farthest apart are {}:{first} and {0}:{second}, chi^2 {:.1} of 3, {verdict}",
-            worst.mounting, worst.chi_squared
-        ),
+    let text = format!(
+        "plateaus run again: {count}; farthest apart are {}:{first} and {0}:{second}, chi^2 {:.1} of 3, {verdict}",
+        worst.mounting, worst.chi_squared
     );
+    screen.fact("", &text);
 }
 
 fn tilts(screen: &mut Screen, tilt: &TiltSummary) {
@@ -136,29 +130,25 @@ fn tilts(screen: &mut Screen, tilt: &TiltSummary) {
         format!("{value} ± {u} urad")
     };
     let verdict = tilts_agree(tilt, shown, Language::English);
-    screen.fact(
-        "TILT",
-        &format!(
-            "by the once-per-revolution term of {} {}, by rest {}; chi^2 {:.1} of 1, {verdict}",
-            counted(tilt.plateaus, "plateau"),
-            shown(tilt.spinning, tilt.spinning_uncertainty),
-            shown(tilt.at_rest, tilt.at_rest_uncertainty),
-            tilt.chi_squared
-        ),
+    let text = format!(
+        "by the once-per-revolution term of {} {}, by rest {}; chi^2 {:.1} of 1, {verdict}",
+        counted(tilt.plateaus, "plateau"),
+        shown(tilt.spinning, tilt.spinning_uncertainty),
+        shown(tilt.at_rest, tilt.at_rest_uncertainty),
+        tilt.chi_squared
     );
+    screen.fact("TILT", &text);
     for DisturbedPlateau { mounting, index, tilt } in &tilt.disturbed {
         let (place, size) = (format!("{mounting}:{}", index + 1), 1e6 * tilt);
         let words = "something else turns with the arm there, such as a vibration of the machine";
         screen.fact("", &format!("left out: {place}, {size:.0} urad; {words}"));
     }
     if tilt.scatters() {
-        screen.fact(
-            "",
-            &format!(
-                "the plateaus' own tilts scatter: chi^2 {:.1} of {}",
-                tilt.scatter_chi_squared,
-                tilt.plateaus.saturating_sub(1)
-            ),
+        let text = format!(
+            "the plateaus' own tilts scatter: chi^2 {:.1} of {}",
+            tilt.scatter_chi_squared,
+            tilt.plateaus.saturating_sub(1)
         );
+        screen.fact("", &text);
     }
 }

@@ -29,19 +29,17 @@ pub fn monte_carlo_text(case: &MonteCarloCase, monte_carlo: &MonteCarlo, coverag
     for (name, square) in
         [("weighted squared error", &monte_carlo.weighted_square), ("chi^2 of the fit", &monte_carlo.chi_squared)]
     {
-        screen.say(
-            2,
-            &format!(
-                "{name}: mean {:.2}, standard deviation {:.2}; expected {} and {:.2}; distance from the chi^2 \
+        let text = format!(
+            "{name}: mean {:.2}, standard deviation {:.2}; expected {} and {:.2}; distance from the chi^2 \
              distribution {:.4}, {:.4} by chance once in twenty",
-                square.mean,
-                square.standard_deviation,
-                square.degrees_of_freedom,
-                expected_deviation(square),
-                square.distance_from_chi_squared(),
-                chance_distance(monte_carlo)
-            ),
+            square.mean,
+            square.standard_deviation,
+            square.degrees_of_freedom,
+            expected_deviation(square),
+            square.distance_from_chi_squared(),
+            chance_distance(monte_carlo)
         );
+        screen.say(2, &text);
     }
     screen
 }

@@ -16,13 +16,11 @@ pub fn noise_table(analysis: &NoiseAnalysis, part: &str) -> Screen {
     let [from, to] = analysis.window;
     let mut screen = Screen::default();
     screen.say(0, &format!("{part}{}, {from:.3} s to {to:.3} s", analysis.file_name()));
-    screen.say(
-        0,
-        &format!(
-            "intervals [lower, upper] hold the true value with {:.1} %; 1 g = 9.80665 m/s^2",
-            100.0 * analysis.confidence
-        ),
+    let text = format!(
+        "intervals [lower, upper] hold the true value with {:.1} %; 1 g = 9.80665 m/s^2",
+        100.0 * analysis.confidence
     );
+    screen.say(0, &text);
     for reading in &analysis.readings {
         heading(&mut screen, reading);
         stability(&mut screen, reading);
@@ -84,14 +82,12 @@ fn spectrum(screen: &mut Screen, reading: &ReadingNoise) {
             return;
         }
     };
-    screen.say(
-        2,
-        &format!(
-            "spectrum, one-sided, means of octaves; {} segments, resolution {} Hz",
-            spectrum.segments,
-            significant(spectrum.resolution, 3)
-        ),
+    let text = format!(
+        "spectrum, one-sided, means of octaves; {} segments, resolution {} Hz",
+        spectrum.segments,
+        significant(spectrum.resolution, 3)
     );
+    screen.say(2, &text);
     let density = format!("{unit}/sqrt(Hz)");
     let mut table = Table::new(1, [("Hz", Align::Left), (&density, Align::Left)]);
     for band in spectrum.bands(1.0) {
@@ -111,13 +107,11 @@ fn spectrum(screen: &mut Screen, reading: &ReadingNoise) {
 
 fn terms(screen: &mut Screen, reading: &ReadingNoise) {
     let Some(terms) = reading.noise.quotable() else { return };
-    screen.say(
-        2,
-        &format!(
-            "noise terms (IEEE Std 952); chi^2 {:.1} with {} degrees of freedom",
-            terms.chi_squared, terms.degrees_of_freedom
-        ),
+    let text = format!(
+        "noise terms (IEEE Std 952); chi^2 {:.1} with {} degrees of freedom",
+        terms.chi_squared, terms.degrees_of_freedom
     );
+    screen.say(2, &text);
     let mut table = Table::new(2, [("", Align::Left), ("", Align::Left), ("", Align::Words)]);
     for term in NoiseTerm::ALL {
         let Shown { factor, unit } = Shown::coefficient(reading, term);

@@ -1,9 +1,7 @@
 //! What an experiment can see, as text for the terminal.
 
 use centrical::Group;
-use centrical_session::{
-    ConditionReport, ObservabilityReport, ObservedParameter, RemedyReport, customary, harmless_line,
-};
+use centrical_session::{ConditionReport, ObservabilityReport, ObservedParameter, RemedyReport, customary};
 
 use super::phrases::{extent, rests_name};
 use super::prediction::prediction_text;
@@ -33,25 +31,21 @@ pub fn observation_text(report: &ObservabilityReport) -> Screen {
 
 fn heading(screen: &mut Screen, report: &ObservabilityReport) {
     if !report.title.is_empty() {
-        screen.say(0, &format!("{}", harmless_line(&report.title)));
+        screen.say(0, &report.title);
     }
-    screen.say(
-        0,
-        &format!(
-            "{}, pair relation {:?}, weighted by {}",
-            counted(report.plateaus, "plateau"),
-            report.pair_relation,
-            report.weighted_by
-        ),
+    let text = format!(
+        "{}, pair relation {:?}, weighted by {}",
+        counted(report.plateaus, "plateau"),
+        report.pair_relation,
+        report.weighted_by
     );
+    screen.say(0, &text);
     screen.gap();
-    screen.head(
-        "RANK",
-        &format!(
-            "{} of {} (singular values below {:.0e} of the largest count as zero)",
-            report.rank, report.columns, report.tolerance
-        ),
+    let text = format!(
+        "{} of {} (singular values below {:.0e} of the largest count as zero)",
+        report.rank, report.columns, report.tolerance
     );
+    screen.head("RANK", &text);
     if let Some(condition) = report.condition_number {
         screen.say(2, &format!("condition number of what is seen: {condition:.3e}"));
     }

@@ -1,7 +1,6 @@
 //! A plan as text for the terminal: time against uncertainty, the schedule, the reason for each plateau, the uncertainties to be
 //! expected.
 
-use centrical_session::harmless_line;
 use centrical_session::{
     ChosenRests, CriterionName, GoalReport, MICRO_G, PlanReport, PlannedMounting, PlannedPlateau, ReasonReport,
     customary, rpm,
@@ -38,25 +37,22 @@ pub fn plan_text(report: &PlanReport) -> Screen {
 
 fn heading(screen: &mut Screen, report: &PlanReport) {
     if !report.title.is_empty() {
-        screen.say(0, &format!("{}", harmless_line(&report.title)));
+        screen.say(0, &report.title);
     }
     let visits: usize = report.mountings.iter().map(|m| m.plateaus.len()).sum();
     let mut visited = counted(visits, "plateau");
     if let Some(beside) = &report.rests {
         visited = format!("{visited} and {} beside the arm", counted(beside.rests.len(), "rest"));
     }
-    let [measuring, ramps, set_ups] = report.time_by_use;
-    screen.head(
-        "PLAN",
-        &format!(
-            "{} in {}, {} of {}",
-            span(report.time),
-            counted(report.mountings.len(), "mounting"),
-            visited,
-            counted(report.candidates, "candidate")
-        ),
+    let text = format!(
+        "{} in {}, {} of {}",
+        span(report.time),
+        counted(report.mountings.len(), "mounting"),
+        visited,
+        counted(report.candidates, "candidate")
     );
-    let [measuring, ramps, set_ups] = [measuring, ramps, set_ups].map(span);
+    screen.head("PLAN", &text);
+    let [measuring, ramps, set_ups] = report.time_by_use.map(span);
     screen.say(2, &format!("measuring {measuring}, ramps and turns {ramps}, set-ups {set_ups}"));
     screen.say(2, &format!("{}: {}", criterion(report), value(report, report.value)));
     if report.for_typical {
@@ -67,24 +63,20 @@ fn heading(screen: &mut Screen, report: &PlanReport) {
     }
     let percent = |part: f64| format!("{:.2} %", 100.0 * part);
     if let Some(least) = report.least_time {
-        screen.say(
-            2,
-            &format!(
-                "no plan of these candidates keeps the goals in less than {}: at most {} shorter",
-                span(least),
-                percent(1.0 - least / report.time)
-            ),
+        let text = format!(
+            "no plan of these candidates keeps the goals in less than {}: at most {} shorter",
+            span(least),
+            percent(1.0 - least / report.time)
         );
+        screen.say(2, &text);
     } else {
-        screen.say(
-            2,
-            &format!(
-                "no plan of these candidates in this time is below {}: at most {} better ({} over mountings)",
-                value(report, report.bound),
-                percent(1.0 - report.bound / report.value),
-                counted(report.nodes, "node")
-            ),
+        let text = format!(
+            "no plan of these candidates in this time is below {}: at most {} better ({} over mountings)",
+            value(report, report.bound),
+            percent(1.0 - report.bound / report.value),
+            counted(report.nodes, "node")
         );
+        screen.say(2, &text);
     }
     screen.say(2, &format!("continuous design on these mountings: {}, certified to {} by the equivalence theorem; whole visits cost {}",
         value(report, report.continuous),
@@ -111,16 +103,14 @@ fn value(report: &PlanReport, value: f64) -> String {
 }
 
 fn one_mounting(screen: &mut Screen, number: usize, mounting: &PlannedMounting) {
-    screen.say(
-        2,
-        &format!(
-            "MOUNTING {number}  position {}, radius {} m, {}; without it {}",
-            mounting.position,
-            mounting.radius,
-            span(mounting.time),
-            lost(&mounting.reason)
-        ),
+    let text = format!(
+        "MOUNTING {number}  position {}, radius {} m, {}; without it {}",
+        mounting.position,
+        mounting.radius,
+        span(mounting.time),
+        lost(&mounting.reason)
     );
+    screen.say(2, &text);
     let mut plateaus = mounting.plateaus.clone();
     plateaus.sort_by(|a, b| {
         let by_set_point = a.speed.total_cmp(&b.speed).then(a.angle.total_cmp(&b.angle));

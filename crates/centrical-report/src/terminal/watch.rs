@@ -59,14 +59,12 @@ pub fn states_text(model: &MeasurementModel, order: &[usize]) -> Screen {
     if lifetimes.cost() > 0 {
         let waiting: Vec<&str> =
             lifetimes.waiting(model).iter().map(|&j| model.parameters()[j].name.as_str()).collect();
-        screen.say(
-            0,
-            &format!(
-                "The order does not keep positions together, which costs {}; waiting at the fullest: {}",
-                counted(lifetimes.cost(), "state"),
-                waiting.join(", ")
-            ),
+        let text = format!(
+            "The order does not keep positions together, which costs {}; waiting at the fullest: {}",
+            counted(lifetimes.cost(), "state"),
+            waiting.join(", ")
         );
+        screen.say(0, &text);
     }
     screen
 }

@@ -67,14 +67,12 @@ fn verdict(screen: &mut Screen, report: &StationHistoryReport) {
 fn parameters(screen: &mut Screen, report: &StationHistoryReport) {
     let name = if report.station.is_empty() { "without a name" } else { &report.station };
     let counts = format!("{} of {}", counted(report.sessions, "session"), counted(report.units, "unit"));
-    screen.head(
-        "STATION",
-        &format!(
-            "{name}: {counts}, {} to {}; mean ± scatter; scatter over the stated uncertainties; slope; largest change that lasts, and the last \
+    let text = format!(
+        "{name}: {counts}, {} to {}; mean ± scatter; scatter over the stated uncertainties; slope; largest change that lasts, and the last \
              session before it; probability of the most unlikely of four tests, a finding below 5 % over all parameters together",
-            report.first, report.last
-        ),
+        report.first, report.last
     );
+    screen.head("STATION", &text);
     let columns = [
         ("", Align::Left),
         ("unit", Align::Left),

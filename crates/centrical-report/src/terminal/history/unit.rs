@@ -252,15 +252,13 @@ fn parameters(screen: &mut Screen, report: &UnitHistoryReport) {
     };
     let percent = percent(report.coverage);
     let kind = if report.trend { "about a line in time" } else { "about a constant" };
-    screen.head(
-        "PARAMETERS",
-        &format!(
-            "last ± its standard uncertainty; standard deviation between sessions beside the stated one, {kind}{together}, with its \
+    let text = format!(
+        "last ± its standard uncertainty; standard deviation between sessions beside the stated one, {kind}{together}, with its \
              interval of {percent}; F of the scatter; drift per year ± standard uncertainty; interval of {percent} of the value after a switch-on \
              on {}; E_n (k = 2) against the calibration before and the first",
-            report.until
-        ),
+        report.until
     );
+    screen.head("PARAMETERS", &text);
     let columns = [
         ("", Align::Left),
         ("unit", Align::Left),
