@@ -122,8 +122,7 @@ fn validity_text(screen: &mut Screen, experiment: &Experiment, validity: &Validi
     screen.say(2, &format!("chi^2: a value as large or larger has a probability of {chance:.3}"));
     largest_residuals(screen, experiment, validity);
     screen.say(2, "each mounting predicted from all others:");
-    let titles = ["mounting", "chi^2", "dof", "probability"].map(|title| (title, Align::Right));
-    let mut table = Table::new(1, titles);
+    let mut table = Table::new(1, &[(Align::Right, &["mounting", "chi^2", "dof", "probability"])]);
     for check in &validity.mountings {
         let p = check.prediction;
         let numbers =
@@ -144,10 +143,8 @@ fn validity_text(screen: &mut Screen, experiment: &Experiment, validity: &Validi
 /// The five plateaus whose residuals are the least probable.
 fn largest_residuals(screen: &mut Screen, experiment: &Experiment, validity: &Validity) {
     screen.say(2, "largest standardised residuals, and their probability over all plateaus:");
-    let numbers = ["f1", "f2", "f3", "leverage", "probability"].map(|title| (title, Align::Right));
-    let [f1, f2, f3, leverage, probability] = numbers;
-    let columns = [("", Align::Left), f1, f2, f3, leverage, probability, ("", Align::Words)];
-    let mut table = Table::new(1, columns);
+    let numbers = ["f1", "f2", "f3", "leverage", "probability"];
+    let mut table = Table::new(1, &[(Align::Left, &[""]), (Align::Right, &numbers), (Align::Words, &[""])]);
     let mut worst: Vec<_> = validity.plateaus.iter().collect();
     worst.sort_by(|a, b| a.prediction.probability.total_cmp(&b.prediction.probability));
     for check in worst.iter().take(5) {
@@ -183,7 +180,7 @@ fn outliers_text(screen: &mut Screen, model: &MeasurementModel, [before, after]:
     let mut moves: Vec<(usize, f64)> = (0..model.parameters().len()).filter_map(|j| Some((j, moved(j)?))).collect();
     moves.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
     screen.say(2, "estimates that moved most, in standard uncertainties:");
-    let mut table = Table::new(1, [("", Align::Left), ("", Align::Right)]);
+    let mut table = Table::new(1, &[(Align::Left, &[""]), (Align::Right, &[""])]);
     for (j, moved) in moves.iter().take(5) {
         table.row([model.parameters()[*j].name.clone(), unsigned_zero(format!("{moved:.2}"))].map(Cell::from));
     }
@@ -202,7 +199,7 @@ fn plateau(experiment: &Experiment, index: usize) -> String {
 fn prediction_table(screen: &mut Screen, curves: &[Vec<CurvePoint>; 3]) {
     screen.head("PREDICTION", "standard uncertainty of a compensated reading, calibration alone, in ug");
     let titles = ["specific force", "along axis 1", "along axis 2", "along axis 3"];
-    let mut table = Table::new(1, titles.map(|title| (title, Align::Right)));
+    let mut table = Table::new(1, &[(Align::Right, &titles)]);
     for n in 0..curves[0].len() {
         let force = unsigned_zero(format!("{:.1} g", curves[0][n].force / STANDARD_GRAVITY));
         let along = |curve: &Vec<CurvePoint>| two_digits(curve.get(n).map_or(f64::NAN, |p| p.along) / MICRO_G).into();

@@ -19,9 +19,7 @@ pub(super) fn axes(screen: &mut Screen, result: &CalibrationResult) {
     let name = (Language::English.messages().words.axes)(&axes.name);
     screen.gap();
     screen.head("OTHER AXES", &format!("{name}: reading = bias + scale x f + non-linear terms as above"));
-    let columns =
-        [("", Align::Left), ("unit", Align::Left), ("f1", Align::Right), ("f2", Align::Right), ("f3", Align::Right)];
-    let mut table = Table::new(2, columns);
+    let mut table = Table::new(2, &[(Align::Left, &["", "unit"]), (Align::Right, &["f1", "f2", "f3"])]);
     let cells = |stem: &str, less: [f64; 3], factor: f64| -> Vec<Cell> {
         let of_row = |p: &&AxesParameter| p.name.strip_prefix(stem).is_some_and(|index| index.len() == 1);
         let shown = axes.parameters.iter().filter(of_row).zip(less);

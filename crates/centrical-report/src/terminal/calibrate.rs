@@ -97,10 +97,8 @@ fn error_model(screen: &mut Screen, result: &CalibrationResult) {
 
 /// A table of estimates by axis.
 fn axes(label: &str, axis: &str) -> Table {
-    let [first, second, third] = [1, 2, 3].map(|n| format!("{axis} {n}"));
-    let numbers = [first, second, third].map(|title| (title, Align::Right));
-    let names = [label, "unit"].map(|title| (title.to_owned(), Align::Left));
-    Table::of(2, names.into_iter().chain(numbers).collect())
+    let numbers = [1, 2, 3].map(|n| format!("{axis} {n}"));
+    Table::new(2, &[(Align::Left, &[label, "unit"]), (Align::Right, &numbers.each_ref().map(String::as_str))])
 }
 
 /// Terms that share a row: the same monomial in the same customary unit.
@@ -156,7 +154,7 @@ fn others(screen: &mut Screen, result: &CalibrationResult) {
     screen.gap();
     let is_of_case = others.iter().all(|p| p.group == Group::CaseTurn);
     screen.head(if is_of_case { "CASE" } else { "EXTENSIONS" }, "");
-    let mut table = Table::new(2, [("", Align::Left), ("unit", Align::Left), ("value", Align::Right)]);
+    let mut table = Table::new(2, &[(Align::Left, &["", "unit"]), (Align::Right, &["value"])]);
     for parameter in &others {
         let unit = customary(&parameter.unit, parameter.group).1;
         table.row([parameter.name.as_str().into(), unit.into(), cell(parameter)]);

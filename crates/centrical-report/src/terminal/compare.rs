@@ -61,15 +61,9 @@ fn one_pair(screen: &mut Screen, report: &ComparisonReport, pair: &PairCompariso
 
 fn differences(screen: &mut Screen, pair: &PairComparison, language: Language) {
     let messages = language.comparison();
-    let columns = [
-        ("", Align::Left),
-        (messages.unit, Align::Left),
-        (messages.difference, Align::Right),
-        ("E_n", Align::Right),
-        (messages.per_year, Align::Right),
-        ("", Align::Words),
-    ];
-    let mut table = Table::new(2, columns);
+    let numbers = [messages.difference, "E_n", messages.per_year];
+    let mut table =
+        Table::new(2, &[(Align::Left, &["", messages.unit]), (Align::Right, &numbers), (Align::Words, &[""])]);
     for d in &pair.differences {
         let (factor, unit) = customary(&d.unit, d.group);
         let shown = |share: f64| {

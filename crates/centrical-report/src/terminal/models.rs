@@ -82,17 +82,8 @@ fn candidates(screen: &mut Screen, selection: &Selection) {
     let shown: Vec<usize> =
         order.iter().enumerate().filter(|(place, n)| is_shown(*place, **n)).map(|(_, n)| *n).collect();
     screen.head("MODELS", "by BIC, the lowest first; + adds to the model as stated");
-    let columns = [
-        ("", Align::Left),
-        ("unknowns", Align::Right),
-        ("chi^2", Align::Right),
-        ("dof", Align::Right),
-        ("BIC", Align::Right),
-        ("hold-out", Align::Right),
-        ("F test", Align::Right),
-        ("", Align::Words),
-    ];
-    let mut table = Table::new(1, columns);
+    let numbers = ["unknowns", "chi^2", "dof", "BIC", "hold-out", "F test"];
+    let mut table = Table::new(1, &[(Align::Left, &[""]), (Align::Right, &numbers), (Align::Words, &[""])]);
     for &n in &shown {
         let rival = &selection.candidates[n];
         let determined = if rival.rank == rival.unknowns {

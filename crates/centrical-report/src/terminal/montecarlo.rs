@@ -46,11 +46,8 @@ pub fn monte_carlo_text(case: &MonteCarloCase, monte_carlo: &MonteCarlo, coverag
 
 /// A row for each parameter: stated uncertainty, spread, bias, coverage.
 fn statistics(screen: &mut Screen, parameters: &Parameters, monte_carlo: &MonteCarlo) {
-    let numbers =
-        ["stated u", "spread", "ratio", "bias, in u", "covered, %"].map(|title| (title.to_owned(), Align::Right));
-    let names = ["", "unit"].map(|title| (title.to_owned(), Align::Left));
-    let columns = names.into_iter().chain(numbers).chain([(String::new(), Align::Words)]);
-    let mut table = Table::of(2, columns.collect());
+    let numbers = ["stated u", "spread", "ratio", "bias, in u", "covered, %"];
+    let mut table = Table::new(2, &[(Align::Left, &["", "unit"]), (Align::Right, &numbers), (Align::Words, &[""])]);
     for (parameter, statistics) in parameters.iter().zip(&monte_carlo.parameters) {
         let (factor, unit) = customary(&parameter.unit, parameter.group);
         let names: [Cell; 2] = [parameter.name.as_str().into(), unit.into()];

@@ -89,7 +89,7 @@ fn spectrum(screen: &mut Screen, reading: &ReadingNoise) {
     );
     screen.say(2, &text);
     let density = format!("{unit}/sqrt(Hz)");
-    let mut table = Table::new(1, [("Hz", Align::Left), (&density, Align::Left)]);
+    let mut table = Table::new(1, &[(Align::Left, &["Hz", &density])]);
     for band in spectrum.bands(1.0) {
         let density = factor * band.density.sqrt();
         table.row([band.frequency, density].map(|number| significant(number, 4).into()));
@@ -112,7 +112,7 @@ fn terms(screen: &mut Screen, reading: &ReadingNoise) {
         terms.chi_squared, terms.degrees_of_freedom
     );
     screen.say(2, &text);
-    let mut table = Table::new(2, [("", Align::Left), ("", Align::Left), ("", Align::Words)]);
+    let mut table = Table::new(2, &[(Align::Left, &["", ""]), (Align::Words, &[""])]);
     for term in NoiseTerm::ALL {
         let Shown { factor, unit } = Shown::coefficient(reading, term);
         let value = match terms.coefficient(term) {

@@ -116,7 +116,7 @@ fn one_mounting(screen: &mut Screen, number: usize, mounting: &PlannedMounting) 
         let by_set_point = a.speed.total_cmp(&b.speed).then(a.angle.total_cmp(&b.angle));
         by_set_point.then(a.duration.total_cmp(&b.duration))
     });
-    let mut table = Table::new(1, [("", Align::Left), ("", Align::Right), ("", Align::Words)]);
+    let mut table = Table::new(1, &[(Align::Left, &[""]), (Align::Right, &[""]), (Align::Words, &[""])]);
     for same in plateaus.chunk_by(|a, b| a == b) {
         let plateau = &same[0];
         let times = if same.len() > 1 { format!("{} x ", same.len()) } else { String::new() };
@@ -134,7 +134,7 @@ fn rests_beside(screen: &mut Screen, beside: &ChosenRests) {
     };
     let (time, lost_all) = (span(beside.reason.time), lost(&beside.reason));
     screen.say(2, &format!("RESTS beside the arm, {attitudes}, {time}; without them {lost_all}"));
-    let mut table = Table::new(1, [("", Align::Left), ("", Align::Right), ("", Align::Words)]);
+    let mut table = Table::new(1, &[(Align::Left, &[""]), (Align::Right, &[""]), (Align::Words, &[""])]);
     for rest in &beside.rests {
         let [x, y, z] = rest.up;
         let up = format!("  up ({x:.2}, {y:.2}, {z:.2})");
@@ -172,9 +172,8 @@ fn goals(screen: &mut Screen, report: &PlanReport) {
     }
     screen.gap();
     screen.head("GOALS", "standard uncertainties");
-    let numbers = ["wanted", "type A", "combined"].map(|title| (title, Align::Right));
-    let [wanted, a, combined] = numbers;
-    let mut table = Table::new(2, [("", Align::Left), ("unit", Align::Left), wanted, a, combined, ("", Align::Words)]);
+    let numbers = ["wanted", "type A", "combined"];
+    let mut table = Table::new(2, &[(Align::Left, &["", "unit"]), (Align::Right, &numbers), (Align::Words, &[""])]);
     for goal in &report.goals {
         let (factor, unit) = customary(&goal.unit, goal.group);
         let shown = |u: Option<f64>| u.map_or("lost".to_owned(), |u| two_digits(u * factor));
@@ -201,7 +200,7 @@ fn frontier(screen: &mut Screen, report: &PlanReport) {
     let unit = unit.map_or(String::new(), |unit| format!(", {unit}"));
     screen.gap();
     screen.head("FRONTIER", &format!("{}{unit}", criterion(report)));
-    let mut table = Table::new(1, ["time", "best", "bound", "uniform", "[K5.5]"].map(|title| (title, Align::Right)));
+    let mut table = Table::new(1, &[(Align::Right, &["time", "best", "bound", "uniform", "[K5.5]"])]);
     for row in &report.frontier {
         let shown = |value: Option<f64>| value.map_or("-".to_owned(), |v| digits(v / size));
         let values = [Some(row.best), Some(row.bound), row.uniform, row.normalised];

@@ -23,10 +23,8 @@ pub fn prediction_text(prediction: &PredictionReport) -> Screen {
 }
 
 fn parameters(screen: &mut Screen, prediction: &PredictionReport) {
-    let numbers = ["type A", "combined", "k", "expanded"].map(|title| (title, Align::Right));
-    let [a, combined, k, expanded] = numbers;
-    let names = [("", Align::Left), ("unit", Align::Left)];
-    let mut table = Table::new(2, [names[0], names[1], a, combined, k, expanded, ("", Align::Words)]);
+    let numbers = ["type A", "combined", "k", "expanded"];
+    let mut table = Table::new(2, &[(Align::Left, &["", "unit"]), (Align::Right, &numbers), (Align::Words, &[""])]);
     let (attitudes, others): (Vec<_>, Vec<_>) = prediction.parameters.iter().partition(|p| p.group == Group::Attitude);
     for p in others {
         let (factor, unit) = customary(&p.unit, p.group);
@@ -67,8 +65,7 @@ fn reading(screen: &mut Screen, prediction: &PredictionReport) {
     if prediction.curves.is_empty() {
         return;
     }
-    let axes = ["along, ug, at", "axis 1", "axis 2", "axis 3"].map(|title| (title, Align::Right));
-    let mut table = Table::new(1, axes);
+    let mut table = Table::new(1, &[(Align::Right, &["along, ug, at", "axis 1", "axis 2", "axis 3"])]);
     for [force, u @ ..] in &prediction.curves {
         let force = format!("{:.0} g", force / STANDARD_GRAVITY);
         table.row([force.into()].into_iter().chain(u.map(|u| ug(u).into())));

@@ -62,7 +62,7 @@ fn protection(effect: &RestsOn) -> String {
 /// The known attitudes of rests stand in one row. Nothing without priors.
 pub(super) fn priors<'p>(screen: &mut Screen, given: impl Iterator<Item = (&'p str, Group, f64)>) {
     let (attitudes, others): (Vec<_>, Vec<_>) = given.partition(|(_, group, _)| *group == Group::Attitude);
-    let mut table = Table::new(1, [("", Align::Left), ("", Align::Right)]);
+    let mut table = Table::new(1, &[(Align::Left, &[""]), (Align::Right, &[""])]);
     for (name, _, ratio) in &others {
         table.row([(*name).into(), format!("{ratio:.3}").into()]);
     }

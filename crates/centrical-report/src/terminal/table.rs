@@ -62,12 +62,14 @@ pub(crate) struct Table {
 }
 
 impl Table {
-    /// A table without rows, whose first `names` columns name the row.
-    pub fn new<const N: usize>(names: usize, columns: [(&str, Align); N]) -> Self {
-        Self::of(names, columns.map(|(title, align)| (title.to_owned(), align)).into())
+    /// A table without rows, whose first `names` columns name the row; titles of columns that stand alike are together.
+    pub fn new(names: usize, columns: &[(Align, &[&str])]) -> Self {
+        let titled =
+            |(align, titles): &(Align, &[&str])| titles.iter().map(|title| ((*title).to_owned(), *align)).collect();
+        Self::of(names, columns.iter().flat_map::<Vec<_>, _>(titled).collect())
     }
 
-    /// The same for any number of columns.
+    /// The same of titles that are made for it.
     pub fn of(names: usize, columns: Vec<(String, Align)>) -> Self {
         Self { names, columns, rows: Vec::new() }
     }
@@ -230,8 +232,9 @@ mod tests {
     use super::{Align, Cell, Table};
 
     fn table() -> Table {
-        let columns = [("", Align::Left), ("value", Align::Right), ("chi^2", Align::Right), ("note", Align::Words)];
-        let mut table = Table::new(1, columns);
+        let columns: [(Align, &[&str]); 3] =
+            [(Align::Left, &[""]), (Align::Right, &["value", "chi^2"]), (Align::Words, &["note"])];
+        let mut table = Table::new(1, &columns);
         let estimate = |value: &str, u: &str| Cell::shown((value.to_owned(), u.to_owned()));
         table.row(["first".into(), estimate("-3.95", "0.10"), "12.0".into()]);
         table.row([

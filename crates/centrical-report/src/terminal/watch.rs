@@ -32,9 +32,9 @@ pub fn watch_table(view: &WatchProgress, targets: &Targets, all_alarms: bool) ->
     let groups = view.groups(targets);
     let label = |set_point: usize| label(view.session, set_point);
     let next = view.next.as_ref().map_or(String::new(), |(next, _)| format!("with {}", label(*next)));
-    let names = [("group", Align::Left), ("unit", Align::Left), ("determined", Align::Right)];
-    let numbers = [("largest u", Align::Right), ("target", Align::Right), (next.as_str(), Align::Right)];
-    let mut table = Table::new(2, [names[0], names[1], names[2], numbers[0], numbers[1], numbers[2]]);
+    let columns: [(Align, &[&str]); 2] =
+        [(Align::Left, &["group", "unit"]), (Align::Right, &["determined", "largest u", "target", &next])];
+    let mut table = Table::new(2, &columns);
     for group in &groups {
         table.row(group_row(group).map(Cell::from));
     }

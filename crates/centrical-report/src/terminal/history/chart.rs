@@ -27,14 +27,15 @@ pub fn chart_text(report: &ChartReport) -> Screen {
         "CHART",
         &format!("{}: centre {} {unit}, standard deviation {} {unit}, {from}", report.name, estimate.0, estimate.1),
     );
-    let columns = [
-        ("date", Align::Left),
-        ("serial", Align::Left),
-        ("value", Align::Right),
-        ("rule", Align::Left),
-        ("", Align::Words),
-    ];
-    let mut table = Table::new(2, columns);
+    let mut table = Table::new(
+        2,
+        &[
+            (Align::Left, &["date", "serial"]),
+            (Align::Right, &["value"]),
+            (Align::Left, &["rule"]),
+            (Align::Words, &[""]),
+        ],
+    );
     for signal in &report.signals {
         let session = &report.sessions[signal.session];
         table.row([

@@ -13,15 +13,9 @@ pub fn history_list_text(list: &HistoryList) -> Screen {
     let failed = list.failed();
     let calibrations = counted(list.calibrations.len() - failed, "calibration");
     screen.head("CALIBRATIONS", &format!("{calibrations}, {}", counted(failed, "failed session")));
-    let columns = [
-        ("date", Align::Left),
-        ("model", Align::Left),
-        ("serial", Align::Left),
-        ("station", Align::Left),
-        ("chi^2/nu", Align::Right),
-        ("verdict", Align::Words),
-    ];
-    let mut table = Table::new(3, columns);
+    let names = ["date", "model", "serial", "station"];
+    let mut table =
+        Table::new(3, &[(Align::Left, &names), (Align::Right, &["chi^2/nu"]), (Align::Words, &["verdict"])]);
     for line in &list.calibrations {
         let ratio = line.ratio().map_or(String::new(), |ratio| format!("{ratio:.3}"));
         let cells = [&line.date, &line.unit_model, &line.unit_serial, &line.station].map(|text| text.as_str().into());

@@ -73,18 +73,14 @@ fn parameters(screen: &mut Screen, report: &StationHistoryReport) {
         report.first, report.last
     );
     screen.head("STATION", &text);
-    let columns = [
-        ("", Align::Left),
-        ("unit", Align::Left),
-        ("mean", Align::Right),
-        ("over stated", Align::Right),
-        ("per year", Align::Right),
-        ("change", Align::Right),
-        ("after", Align::Left),
-        ("probability", Align::Right),
-        ("", Align::Words),
+    let columns: [(Align, &[&str]); 5] = [
+        (Align::Left, &["", "unit"]),
+        (Align::Right, &["mean", "over stated", "per year", "change"]),
+        (Align::Left, &["after"]),
+        (Align::Right, &["probability"]),
+        (Align::Words, &[""]),
     ];
-    let mut table = Table::new(2, columns);
+    let mut table = Table::new(2, &columns);
     for p in &report.parameters {
         let (factor, unit) = customary(&p.unit, p.group);
         let slope = p.slope_per_year.zip(p.slope_uncertainty);

@@ -19,10 +19,7 @@ pub fn unit_history_text(report: &UnitHistoryReport) -> Screen {
     screen.gap();
     let UnitHistoryReport { unit_model, unit_serial, sessions, .. } = report;
     screen.head("UNIT", &format!("{}: {}", unit_name(unit_model, unit_serial), counted(sessions.len(), "calibration")));
-    let mut table = Table::new(
-        1,
-        [("", Align::Left), ("date", Align::Left), ("station", Align::Left), ("", Align::Left), ("", Align::Words)],
-    );
+    let mut table = Table::new(1, &[(Align::Left, &["", "date", "station", ""]), (Align::Words, &[""])]);
     for (n, session) in sessions.iter().enumerate() {
         let verdict = if session.acceptable { "" } else { "NOT ACCEPTABLE" };
         let date = session.stamp.clone().unwrap_or_else(|| session.date.to_string());
@@ -259,20 +256,16 @@ fn parameters(screen: &mut Screen, report: &UnitHistoryReport) {
         report.until
     );
     screen.head("PARAMETERS", &text);
-    let columns = [
-        ("", Align::Left),
-        ("unit", Align::Left),
-        ("last", Align::Right),
-        ("between", Align::Right),
-        ("interval", Align::Left),
-        ("F", Align::Right),
-        ("per year", Align::Right),
-        ("forecast", Align::Left),
-        ("E_n", Align::Right),
-        ("first", Align::Right),
-        ("", Align::Words),
+    let columns: [(Align, &[&str]); 7] = [
+        (Align::Left, &["", "unit"]),
+        (Align::Right, &["last", "between"]),
+        (Align::Left, &["interval"]),
+        (Align::Right, &["F", "per year"]),
+        (Align::Left, &["forecast"]),
+        (Align::Right, &["E_n", "first"]),
+        (Align::Words, &[""]),
     ];
-    let mut table = Table::new(2, columns);
+    let mut table = Table::new(2, &columns);
     for p in &report.parameters {
         table.row(parameter(p));
     }
@@ -331,17 +324,14 @@ fn readings(screen: &mut Screen, report: &UnitHistoryReport) {
          sqrt(stated^2 + 2 between^2), and expanded; of each newtonometer at rest, and where it is largest",
     );
     let expanded = percent(report.coverage);
-    let columns = [
-        ("newtonometer", Align::Left),
-        ("force, g", Align::Left),
-        ("stated", Align::Right),
-        ("between", Align::Right),
-        ("interval", Align::Left),
-        ("after", Align::Right),
-        (&expanded, Align::Right),
-        ("due", Align::Left),
+    let columns: [(Align, &[&str]); 5] = [
+        (Align::Left, &["newtonometer", "force, g"]),
+        (Align::Right, &["stated", "between"]),
+        (Align::Left, &["interval"]),
+        (Align::Right, &["after", &expanded]),
+        (Align::Left, &["due"]),
     ];
-    let mut table = Table::new(2, columns);
+    let mut table = Table::new(2, &columns);
     for r in report.shown_readings() {
         table.row(reading(r));
     }

@@ -128,18 +128,13 @@ fn parameters(screen: &mut Screen, report: &UnitsHistoryReport) {
     screen.gap();
     let counts = format!("{}, {}", counted(report.units, "unit"), counted(report.sessions, "calibration"));
     screen.head("UNITS", &format!("{}: {counts}; of each unit the mean over its calibrations", report.unit_model));
-    let columns = [
-        ("", Align::Left),
-        ("unit", Align::Left),
-        ("mean", Align::Right),
-        ("least", Align::Right),
-        ("largest", Align::Right),
-        ("Cp", Align::Right),
-        ("Cpk", Align::Right),
-        ("interval", Align::Left),
-        ("", Align::Words),
+    let columns: [(Align, &[&str]); 4] = [
+        (Align::Left, &["", "unit"]),
+        (Align::Right, &["mean", "least", "largest", "Cp", "Cpk"]),
+        (Align::Left, &["interval"]),
+        (Align::Words, &[""]),
     ];
-    let mut table = Table::new(2, columns);
+    let mut table = Table::new(2, &columns);
     for p in &report.parameters {
         let (factor, unit) = customary(&p.unit, p.group);
         let shown = |value: f64| in_digits_of(factor, value, p.deviation.unwrap_or(0.0));
@@ -198,15 +193,9 @@ fn batch_means(screen: &mut Screen, report: &UnitsHistoryReport) {
         "BATCHES",
         "mean ± standard deviation over the units of a batch; probability of means as different by chance (Welch)",
     );
-    let columns = [
-        ("", Align::Left),
-        ("unit", Align::Left),
-        ("batch", Align::Left),
-        ("units", Align::Right),
-        ("mean", Align::Right),
-        ("probability", Align::Left),
-    ];
-    let mut table = Table::new(3, columns);
+    let columns: [(Align, &[&str]); 3] =
+        [(Align::Left, &["", "unit", "batch"]), (Align::Right, &["units", "mean"]), (Align::Left, &["probability"])];
+    let mut table = Table::new(3, &columns);
     for p in differing {
         let (factor, unit) = customary(&p.unit, p.group);
         for b in &p.batches {
