@@ -1,56 +1,48 @@
-//! A bar for a person who waits; nothing when the output is not a terminal.
+//! A bar for a person who waits while a job is done; nothing when the output is not a terminal.
 
 use std::ops::ControlFlow;
 
-use crate::output::Printing;
-use centrical_session::Session;
+use centrical_session::{Error, OnProgress, Session};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
-/// A bar over the records of a session, each read twice.
-pub fn reading(session: &Session, printing: Printing) -> ProgressBar {
+use crate::output::Printing;
+
+/// Does a job that reads each record of a session twice.
+pub fn reading<T>(
+    session: &Session,
+    printing: Printing,
+    job: impl FnOnce(OnProgress) -> Result<T, Error>,
+) -> Result<T, Error> {
     let template = "reading {bar:30} {percent}% of two passes, {bytes_per_sec}, {eta} left";
-    bar(template, Some(2 * session.record_bytes()), printing.quiet)
+    under(template, Some(2 * session.record_bytes()), printing.quiet, job)
 }
 
-/// A bar over `count` mountings that are simulated.
-pub fn mountings(count: usize, printing: Printing) -> ProgressBar {
-    bar("simulating {bar:30} {pos}/{len} mountings, {eta} left", Some(count as u64), printing.quiet)
+/// Does a job that counts its pieces, `all` of them if their number is known.
+pub fn counting<T>(
+    template: &str,
+    all: Option<usize>,
+    quiet: bool,
+    job: impl FnOnce(OnProgress<usize>) -> Result<T, Error>,
+) -> Result<T, Error> {
+    under(template, all.map(|all| all as u64), quiet, |progress| job(&|count| progress(count as u64)))
 }
 
-/// A bar over `count` calibrations.
-pub fn calibrations(count: usize, printing: Printing) -> ProgressBar {
-    bar("calibrating {bar:30} {pos}/{len}, {eta} left", Some(count as u64), printing.quiet)
-}
-
-/// A bar over `count` sessions.
-pub fn sessions(count: usize, printing: Printing) -> ProgressBar {
-    bar("calibrating {bar:30} {pos}/{len} sessions, {eta} left", Some(count as u64), printing.quiet)
-}
-
-/// A count of results: how many there are shows as folders are read.
-pub fn results(quiet: bool) -> ProgressBar {
-    bar("reading {pos} results, {elapsed}", None, quiet)
-}
-
-/// Moves a bar by what was done.
-pub fn on(bar: &ProgressBar) -> impl Fn(u64) -> ControlFlow<()> + Sync {
-    |done| {
-        bar.inc(done);
-        ControlFlow::Continue(())
-    }
-}
-
-/// The same for what is counted in pieces.
-pub fn counting(bar: &ProgressBar) -> impl Fn(usize) -> ControlFlow<()> + Sync {
-    |count| on(bar)(count as u64)
-}
-
-/// A bar on standard error, or none for a quiet command. indicatif hides it when that is not a terminal.
-fn bar(template: &str, length: Option<u64>, quiet: bool) -> ProgressBar {
+/// Does a job under a bar on standard error, or under none for a quiet command. indicatif hides it when that is not a terminal.
+fn under<T>(
+    template: &str,
+    all: Option<u64>,
+    quiet: bool,
+    job: impl FnOnce(OnProgress) -> Result<T, Error>,
+) -> Result<T, Error> {
     let target = if quiet { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
-    let bar = ProgressBar::with_draw_target(length, target);
+    let bar = ProgressBar::with_draw_target(all, target);
     if let Ok(style) = ProgressStyle::with_template(template) {
         bar.set_style(style);
     }
-    bar
+    let done = job(&|done| {
+        bar.inc(done);
+        ControlFlow::Continue(())
+    })?;
+    bar.finish_and_clear();
+    Ok(done)
 }

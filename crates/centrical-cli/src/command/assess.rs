@@ -42,9 +42,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
         scale_by_residuals: arguments.scale_by_residuals,
         range: arguments.range.map(|g| g * STANDARD_GRAVITY),
     };
-    let bar = progress::reading(&session, arguments.printing);
-    let assessment = assess(&session, &request, &progress::on(&bar))?;
-    bar.finish_and_clear();
+    let assessment = progress::reading(&session, arguments.printing, |progress| assess(&session, &request, progress))?;
     let text = || assessment_text(&assessment, arguments.coverage, arguments.correlations);
     arguments.printing.show(text, || assessment.report(arguments.coverage).to_json())?;
     Ok(Outcome::acceptable(assessment.objections.is_empty()))

@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use centrical_report::{refuse_outputs, states_text};
 use centrical_session::{
-    CalibrationResult, Error, Method, Place, PlateauName, Session, Store, add_result, calibrate, claim_folder,
-    refuse_date,
+    CalibrationResult, Error, Method, OnProgress, Place, PlateauName, Session, Store, add_result, calibrate,
+    claim_folder, refuse_date,
 };
 
 use super::report::Documents;
@@ -76,9 +76,8 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     if out.is_none() {
         file.as_deref().map_or(Ok(()), |file| refuse_another_unit(file, &session))?;
     }
-    let bar = progress::reading(&session, arguments.printing);
-    let result = calibrate(&session, &arguments.hold_out, method, &progress::on(&bar))?;
-    bar.finish_and_clear();
+    let job = |progress: OnProgress| calibrate(&session, &arguments.hold_out, method, progress);
+    let result = progress::reading(&session, arguments.printing, job)?;
     let result = arguments.documents.in_axes(result, &arguments.session)?;
     if let Some(file) = &file {
         result.write(file)?;

@@ -21,9 +21,7 @@ pub struct Arguments {
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let session = Session::read(&arguments.session)?;
-    let bar = progress::reading(&session, arguments.printing);
-    let selection = select_model(&session, &progress::on(&bar))?;
-    bar.finish_and_clear();
+    let selection = progress::reading(&session, arguments.printing, |progress| select_model(&session, progress))?;
     let json = || ModelsReport::of(&selection, &session.title).to_json();
     arguments.printing.show(|| selection_table(&selection), json)?;
     Ok(Outcome::Done)

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use centrical_report::monte_carlo_text;
-use centrical_session::{Error, MonteCarloCase, MonteCarloRequest, Session, read_plan};
+use centrical_session::{Error, MonteCarloCase, MonteCarloRequest, OnProgress, Session, read_plan};
 
 use crate::given::{above_zero, probability};
 use crate::output::{Outcome, Printing};
@@ -51,7 +51,8 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
         MonteCarloCase::planned(plan, arguments.noise)?
     } else {
         MonteCarloCase::refuse_noise(file, arguments.noise)?;
-        measured(&Session::read(file)?, arguments.printing)?
+        let session = Session::read(file)?;
+        progress::reading(&session, arguments.printing, |progress| MonteCarloCase::measured(&session, progress))?
     };
     if arguments.typical {
         case = case.of_typical_unit();
@@ -62,17 +63,10 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
         coverage: arguments.coverage,
         linear: arguments.linear,
     };
-    let bar = progress::calibrations(arguments.runs, arguments.printing);
-    let monte_carlo = case.run(&request, &progress::counting(&bar))?;
-    bar.finish_and_clear();
+    let template = "calibrating {bar:30} {pos}/{len}, {eta} left";
+    let job = |progress: OnProgress<usize>| case.run(&request, progress);
+    let monte_carlo = progress::counting(template, Some(arguments.runs), arguments.printing.quiet, job)?;
     let text = || monte_carlo_text(&case, &monte_carlo, arguments.coverage);
     arguments.printing.show(text, || case.report(&request, &monte_carlo).to_json())?;
     Ok(Outcome::Done)
-}
-
-fn measured(session: &Session, printing: Printing) -> Result<MonteCarloCase, Error> {
-    let bar = progress::reading(session, printing);
-    let case = MonteCarloCase::measured(session, &progress::on(&bar))?;
-    bar.finish_and_clear();
-    Ok(case)
 }

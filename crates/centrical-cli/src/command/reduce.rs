@@ -28,10 +28,11 @@ pub struct Arguments {
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let session = Session::read(&arguments.session)?;
-    let bar = progress::reading(&session, arguments.printing);
-    let (session, reduced) = reduce_without_inputs(&session, &progress::on(&bar))?;
-    write_reduced(&session, &reduced, None, arguments.format.into(), &arguments.out, &progress::on(&bar))?;
-    bar.finish_and_clear();
+    let (session, reduced) = progress::reading(&session, arguments.printing, |progress| {
+        let (session, reduced) = reduce_without_inputs(&session, progress)?;
+        write_reduced(&session, &reduced, None, arguments.format.into(), &arguments.out, progress)?;
+        Ok((session, reduced))
+    })?;
     let text = || reduction_text(&reduced, &arguments.out);
     arguments.printing.show(text, || ReductionReport::of(&session, &reduced, &arguments.out).to_json())?;
     Ok(Outcome::Done)

@@ -65,13 +65,14 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
         reduced: arguments.reduced,
     };
     let sessions = matching_paths(&arguments.sessions)?;
-    let bar = progress::sessions(sessions.len(), arguments.printing);
+    let template = "calibrating {bar:30} {pos}/{len} sessions, {eta} left";
     let asked = asked_to_end();
-    let summary = calibrate_series(&sessions, &request, &|count| {
-        bar.inc(count as u64);
-        if asked.load(Ordering::Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    let summary = progress::counting(template, Some(sessions.len()), arguments.printing.quiet, |progress| {
+        calibrate_series(&sessions, &request, &|count| {
+            let goes_on = progress(count);
+            if asked.load(Ordering::Relaxed) { ControlFlow::Break(()) } else { goes_on }
+        })
     })?;
-    bar.finish_and_clear();
     remark(&failures(&summary));
     match (arguments.printing.json, arguments.printing.quiet) {
         (true, _) => print(&summary.to_json()?)?,

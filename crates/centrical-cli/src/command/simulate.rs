@@ -37,9 +37,10 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let truth = Truth::read(&arguments.truth, &plan, arguments.seed)?;
     let plan = &truth.plan;
     let records = plan.mountings.len() + plan.rest_tables.len();
-    let bar = progress::mountings(records, arguments.printing);
-    simulate_session(&truth, arguments.seed, arguments.format.into(), &arguments.out, &progress::counting(&bar))?;
-    bar.finish_and_clear();
+    let template = "simulating {bar:30} {pos}/{len} mountings, {eta} left";
+    progress::counting(template, Some(records), arguments.printing.quiet, |progress| {
+        simulate_session(&truth, arguments.seed, arguments.format.into(), &arguments.out, progress)
+    })?;
     arguments
         .printing
         .show(Screen::default, || SimulationReport::of(plan, arguments.seed, &arguments.out).to_json())?;

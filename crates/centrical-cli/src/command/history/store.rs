@@ -33,14 +33,10 @@ pub struct Add {
 
 /// Runs the command.
 pub fn add(arguments: &Add) -> Result<Outcome, Error> {
-    let bar = progress::results(arguments.quiet);
-    let added = add_results(
-        &arguments.store,
-        &matching_paths(&arguments.results)?,
-        arguments.rows_only,
-        &progress::counting(&bar),
-    )?;
-    bar.finish_and_clear();
+    let results = matching_paths(&arguments.results)?;
+    let added = progress::counting("reading {pos} results, {elapsed}", None, arguments.quiet, |progress| {
+        add_results(&arguments.store, &results, arguments.rows_only, progress)
+    })?;
     match (arguments.json, arguments.quiet) {
         (true, _) => print(&AddedReport::of(added.new, added.known).to_json()?)?,
         (false, false) => print(&format!("{} new, {} known\n", added.new, added.known))?,
