@@ -4,7 +4,7 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::{Path, PathBuf};
 
 use centrical_report::{Language, ListedResult, compared_page, figures, html, report, results_page, unchosen_page};
-use centrical_session::{CalibrationResult, ComparisonRequest, Error, collect_results, compare_results};
+use centrical_session::{CalibrationResult, ComparisonRequest, Error, Place, collect_results, compare_results};
 
 use super::answer::{Answer, Query, Site};
 use super::watched::Watched;
@@ -32,12 +32,7 @@ impl Results {
         }
         if files.is_empty() && !results.watched.is_there() {
             let expected = "a result.json, or the files of a watch";
-            return Err(Error::content(
-                folder,
-                centrical_session::Place::Whole,
-                "neither a result nor a watch",
-                expected,
-            ));
+            return Err(Error::content(folder, Place::Whole, "neither a result nor a watch", expected));
         }
         Ok(results)
     }
