@@ -120,15 +120,12 @@ pub fn history_unit(
     };
     let (on, until) = (day("on", on)?, day("until", until)?);
     let request = UnitHistoryRequest { trend, until, limit, on, coverage: confidence };
-    let results = given(results)?;
-    progress::run(py, &None, |work| {
-        let (model, serial, station) = chosen;
-        let read_of = if together { None } else { serial.clone() };
-        let selection = selection(Depth::Whole, (model, read_of, station));
-        let calibrations = read(&results, &selection, &|done| work.advance(done))?;
-        let report = unit_history_among(calibrations, serial.as_deref(), request).map_err(|none| none.of(&results))?;
+    let (model, serial, station) = chosen;
+    let read_of = if together { None } else { serial.clone() };
+    of_calibrations(py, results, selection(Depth::Whole, (model, read_of, station)), |calibrations, results| {
+        let report = unit_history_among(calibrations, serial.as_deref(), request).map_err(|none| none.of(results))?;
         if let Some(folder) = &out {
-            write_plots(folder, &unit_history_plots(&report, &ParameterLimits::default()), &results)?;
+            write_plots(folder, &unit_history_plots(&report, &ParameterLimits::default()), results)?;
         }
         report.to_json()
     })
@@ -143,26 +140,20 @@ pub fn history_units(
     laboratory: Option<PathBuf>,
     batches: Option<PathBuf>,
 ) -> PyResult<String> {
-    let results = given(results)?;
-    progress::run(py, &None, |work| {
-        let selection = selection(Depth::Errors, chosen);
-        let calibrations = read(&results, &selection, &|done| work.advance(done))?;
+    of_calibrations(py, results, selection(Depth::Errors, chosen), |calibrations, results| {
         let limits = laboratory.as_deref().map(|file| read_limits(file, &calibrations)).transpose()?;
         let batches = batches.as_deref().map(read_batches).transpose()?;
         let request = UnitsHistoryRequest { limits: limits.unwrap_or_default(), batches: batches.unwrap_or_default() };
         let report = ComparedUnits::of(by_unit(calibrations)).and_then(|compared| units_history(&compared, &request));
-        report.map_err(|none| none.of(&results))?.to_json()
+        report.map_err(|none| none.of(results))?.to_json()
     })
 }
 
 /// `centrical-station-history/1`.
 #[pyfunction]
 pub fn history_station(py: Python, results: Vec<PathBuf>, chosen: Chosen) -> PyResult<String> {
-    let results = given(results)?;
-    progress::run(py, &None, |work| {
-        let selection = selection(Depth::Values, chosen);
-        let calibrations = read(&results, &selection, &|done| work.advance(done))?;
-        station_history(&calibrations).map_err(|none| none.of(&results))?.to_json()
+    of_calibrations(py, results, selection(Depth::Values, chosen), |calibrations, results| {
+        station_history(&calibrations).map_err(|none| none.of(results))?.to_json()
     })
 }
 
@@ -187,14 +178,11 @@ pub fn history_chart(
         return Err(refused("deviation", found));
     }
     let limits = stated.map_or(ChartLimits::Accepted(accepted), |(c, deviation)| ChartLimits::Stated(c, deviation));
-    let results = given(results)?;
-    progress::run(py, &None, |work| {
-        let selection = selection(Depth::Values, chosen);
-        let calibrations = read(&results, &selection, &|done| work.advance(done))?;
+    of_calibrations(py, results, selection(Depth::Values, chosen), |calibrations, results| {
         let report = chart_of_one(&calibrations, parameter, ChartRequest { limits, rules, last: None })
-            .map_err(|none| none.of(&results))?;
+            .map_err(|none| none.of(results))?;
         if let Some(folder) = &out {
-            write_plots(folder, &chart_plots(&report), &results)?;
+            write_plots(folder, &chart_plots(&report), results)?;
         }
         report.to_json()
     })
@@ -220,10 +208,15 @@ fn selection(depth: Depth, (unit_model, unit_serial, station): Chosen) -> Select
     Selection { depth, unit_model, unit_serial, station, keys: None }
 }
 
-/// Stores and results, one at least.
-fn given(results: Vec<PathBuf>) -> PyResult<Vec<PathBuf>> {
+/// The document that `report` makes of the calibrations in stores and results, one of these at least.
+fn of_calibrations(
+    py: Python,
+    results: Vec<PathBuf>,
+    selection: Selection,
+    report: impl FnOnce(Vec<Calibrated>, &[PathBuf]) -> Result<String, Error> + Send,
+) -> PyResult<String> {
     if results.is_empty() {
         return Err(refused("results", "found none, expected a store, results or folders of them"));
     }
-    Ok(results)
+    progress::run(py, &None, |work| report(read(&results, &selection, &|done| work.advance(done))?, &results))
 }

@@ -25,7 +25,6 @@ enum Origin {
 
 /// The result of a session whose numbers are arrays: of its records or, if they are given, of its plateaus.
 #[pyfunction]
-#[allow(clippy::too_many_arguments, reason = "what a session is made of")]
 pub fn calibrate_arrays(
     py: Python,
     session: GivenSession,

@@ -25,7 +25,6 @@ pub enum Attitudes {
 
 /// The result of records; into the folder `out` as well, with the rests as a session and the report, if one is given.
 #[pyfunction]
-#[allow(clippy::too_many_arguments, reason = "what is said of a record")]
 pub fn tumble(
     py: Python,
     records: Vec<GivenFile>,
