@@ -19,8 +19,9 @@ pub fn digital_certificate(
     issuer: &Issuer,
     language: Language,
 ) -> Result<String, UnknownUnit> {
-    let units: Vec<Unit> = result.parameters.iter().map(|p| Unit::parse(&p.unit)).collect::<Result<_, _>>()?;
-    let mut results = Ok(());
+    let units = result.parameters.iter().map(|p| Unit::parse(&p.unit)).collect::<Result<Vec<_>, _>>()?;
+    let of_axes = result.axes.iter().flat_map(|axes| &axes.parameters);
+    let of_axes = of_axes.map(|p| Unit::parse(&p.unit)).collect::<Result<Vec<_>, _>>()?;
     let mut xml = Xml::new();
     let attributes = [
         ("xmlns:xsi", "http://www.w3.org/2001/XMLSchema-instance"),
@@ -31,8 +32,7 @@ pub fn digital_certificate(
     ];
     xml.element_with("dcc:digitalCalibrationCertificate", &attributes, |xml| {
         administrative::data(xml, result, issuer, language);
-        results = results::list(xml, (result, &units), &issuer.laboratory, language);
+        results::list(xml, result, [&units, &of_axes], &issuer.laboratory, language);
     });
-    results?;
     Ok(xml.into_text())
 }

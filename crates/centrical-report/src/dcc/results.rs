@@ -2,7 +2,7 @@
 //! errors.
 
 use centrical_session::{
-    CalibrationResult, Condition, Laboratory, OutputSummary, OutputUnit, ParameterEstimate, Symbol, Unit, UnknownUnit,
+    CalibrationResult, Condition, Laboratory, OutputSummary, OutputUnit, ParameterEstimate, Symbol, Unit,
 };
 use nalgebra::Vector3;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
@@ -16,15 +16,15 @@ use crate::evaluation::{
 use crate::language::Language;
 use crate::number::converted;
 
-/// The results, the parameters with their `units`.
+/// The results, with the units of the parameters and of those in other axes.
 pub(super) fn list(
     xml: &mut Xml,
-    (result, units): (&CalibrationResult, &[Unit]),
+    result: &CalibrationResult,
+    [units, of_axes]: [&[Unit]; 2],
     laboratory: &Laboratory,
     language: Language,
-) -> Result<(), UnknownUnit> {
+) {
     let messages = language.messages();
-    let mut of_axes = Ok(());
     xml.element("dcc:measurementResults", |xml| {
         xml.element("dcc:measurementResult", |xml| {
             xml.content("dcc:name", messages.results, language);
@@ -36,12 +36,11 @@ pub(super) fn list(
                 nominal(xml, result, language);
                 parameters(xml, result, units, language);
                 covariance(xml, result, units, language);
-                of_axes = other_axes(xml, result, language);
+                other_axes(xml, result, of_axes, language);
                 errors(xml, result, language);
             });
         });
     });
-    of_axes
 }
 
 fn methods(xml: &mut Xml, result: &CalibrationResult, laboratory: &Laboratory, language: Language) {
@@ -250,11 +249,11 @@ fn covariance(xml: &mut Xml, result: &CalibrationResult, units: &[Unit], languag
 }
 
 /// The error model in other axes, as one vector with its covariance matrix.
-fn other_axes(xml: &mut Xml, result: &CalibrationResult, language: Language) -> Result<(), UnknownUnit> {
+fn other_axes(xml: &mut Xml, result: &CalibrationResult, units: &[Unit], language: Language) {
     let messages = language.messages();
-    let Some(axes) = &result.axes else { return Ok(()) };
-    let quantities = axes.parameters.iter().map(|p| Ok((p.name.as_str(), p.value, Unit::parse(&p.unit)?)));
-    let quantities = quantities.collect::<Result<Vec<_>, _>>()?;
+    let Some(axes) = &result.axes else { return };
+    let quantities = axes.parameters.iter().zip(units).map(|(p, unit)| (p.name.as_str(), p.value, *unit));
+    let quantities: Vec<_> = quantities.collect();
     xml.kind("dcc:result", "centrical_otherAxes", |xml| {
         xml.content("dcc:name", &format!("{}: {}", messages.axes, (messages.words.axes)(&axes.name)), language);
         xml.content("dcc:description", messages.axes_text, language);
@@ -268,7 +267,6 @@ fn other_axes(xml: &mut Xml, result: &CalibrationResult, language: Language) -> 
             });
         });
     });
-    Ok(())
 }
 
 /// Quantities, each a label, a value and a unit, as one vector with its covariance matrix.
