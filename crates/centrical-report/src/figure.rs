@@ -11,16 +11,14 @@ mod past;
 mod positions;
 mod record;
 
-use centrical::Position;
 use centrical_session::CalibrationResult;
-use nalgebra::Matrix3;
 
 pub use self::drawing::Figure;
 pub use self::frontier::frontier_plot;
 pub use self::live::{history_figure, live_readings_figure, live_speeds_figure, live_uncertainties_figure};
 pub use self::noise::noise_plots;
 pub use self::past::{batches_plot, chart_plots, comparison_plot, distribution_plot, unit_history_plots};
-use self::positions::position_drawings;
+pub(crate) use self::positions::positions;
 pub use self::positions::positions_figure;
 use crate::language::Language;
 
@@ -35,20 +33,4 @@ pub fn figures(result: &CalibrationResult, language: Language) -> Vec<Figure> {
         .chain(fit::convergence(result, language))
         .chain(record::figure(result, language))
         .collect()
-}
-
-/// The drawing of the mounting positions; `None` if the result does not have them.
-pub(crate) fn positions(result: &CalibrationResult, language: Language) -> Option<Figure> {
-    let messages = language.messages();
-    let positions: Vec<Position> = result
-        .model
-        .positions
-        .iter()
-        .filter(|position| !position.is_free)
-        .map(|position| Position::on_arm(&position.id, Matrix3::from_fn(|i, j| position.matrix[i][j]), &position.pair))
-        .collect();
-    (!positions.is_empty()).then(|| {
-        let drawings = position_drawings(&positions, language);
-        Figure::new("positions", messages.positions, messages.positions_caption, drawings)
-    })
 }

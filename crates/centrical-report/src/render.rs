@@ -9,8 +9,8 @@ mod pdf;
 mod results;
 
 pub use self::history::{
-    IndexedModel, IndexedStation, ListedUnit, PageKind, StoreCharts, due_comment, due_of_page, history_due_page,
-    history_index, history_model_page, history_station_page, history_unit_page, no_unit_history_page,
+    Indexed, ListedUnit, PageKind, StoreCharts, due_comment, due_of_page, history_due_page, history_index,
+    history_model_page, history_station_page, history_unit_page, no_unit_history_page,
 };
 pub use self::html::html;
 pub use self::live::{LIVE_SCRIPT, LIVE_STYLE, live_page, live_panel};

@@ -2,7 +2,7 @@
 
 use centrical_session::{CalibrationResult, Decision, DecisionRule, Limited, StatedLimit};
 
-use super::expanded::expanded;
+use super::expanded::{expanded, expanded_of_normal};
 use super::reading_error::reading_errors;
 
 /// What a decision says of the unit.
@@ -113,7 +113,7 @@ fn worst_reading(
     let points = errors.iter().zip(&result.plateaus).map(|(error, plateau)| {
         let j = axis - 1;
         let u = error.uncertainty[j].hypot(error.prediction[j]);
-        let value = (error.speed_free[j], super::expanded::expanded_of_normal(u));
+        let value = (error.speed_free[j], expanded_of_normal(u));
         (value, format!("{}:{}", plateau.mounting, plateau.index + 1))
     });
     points.min_by(|(a, _), (b, _)| margin(*a, limit, rule).total_cmp(&margin(*b, limit, rule)))

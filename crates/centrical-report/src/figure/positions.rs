@@ -3,8 +3,10 @@
 use std::fmt::Write;
 
 use centrical::Position;
-use nalgebra::Vector3;
+use centrical_session::CalibrationResult;
+use nalgebra::{Matrix3, Vector3};
 
+use super::drawing::Figure;
 use crate::language::{Language, Messages};
 use crate::plot::Escaped;
 
@@ -31,15 +33,25 @@ pub fn positions_figure(positions: &[Position], language: Language) -> String {
     svg
 }
 
-/// A drawing for each position.
-pub(super) fn position_drawings(positions: &[Position], language: Language) -> Vec<String> {
+/// The drawing of the mounting positions; `None` if the result does not have them.
+pub(crate) fn positions(result: &CalibrationResult, language: Language) -> Option<Figure> {
     let messages = language.messages();
-    let draw = |position: &Position| {
-        let mut svg = opened(PANEL, &format!("{} {}", messages.position, position.id));
-        panel(&mut svg, position, messages);
-        svg + "</svg>\n"
-    };
-    positions.iter().map(draw).collect()
+    let positions: Vec<Position> = result
+        .model
+        .positions
+        .iter()
+        .filter(|position| !position.is_free)
+        .map(|position| Position::on_arm(&position.id, Matrix3::from_fn(|i, j| position.matrix[i][j]), &position.pair))
+        .collect();
+    (!positions.is_empty()).then(|| {
+        let draw = |position: &Position| {
+            let mut svg = opened(PANEL, &format!("{} {}", messages.position, position.id));
+            panel(&mut svg, position, messages);
+            svg + "</svg>\n"
+        };
+        let drawings = positions.iter().map(draw).collect();
+        Figure::new("positions", messages.positions, messages.positions_caption, drawings)
+    })
 }
 
 fn opened((width, height): (f64, f64), label: &str) -> String {

@@ -87,18 +87,11 @@ pub fn write_documents(request: &DocumentRequest) -> Result<Documents, Error> {
     let issuer = request.laboratory.as_deref().map(|file| read_issuer(file, &result)).transpose()?;
     let issuer = issuer.map(|issuer| Issuer { past: past.clone(), ..issuer });
     let logo = issuer.as_ref().zip(request.laboratory.as_ref()).and_then(|(of, file)| of.laboratory.logo(file));
-    let inputs = [
-        Some(&request.result),
-        request.history.as_ref(),
-        request.before.as_ref(),
-        request.laboratory.as_ref(),
-        logo.as_ref(),
-    ];
-    let outputs = [request.html.as_ref(), request.pdf.as_ref(), request.dcc.as_ref()];
-    let listed = |files: &[Option<&PathBuf>]| files.iter().flatten().map(|file| (*file).clone()).collect::<Vec<_>>();
-    let inputs = [listed(&inputs), request.past.clone()].concat();
-    refuse_inputs(&listed(&outputs), &inputs)?;
-    if let Some(code) = request.code.as_ref().filter(|code| outputs.contains(&Some(*code))) {
+    let inputs = [&request.history, &request.before, &request.laboratory, &logo].into_iter().flatten();
+    let inputs: Vec<PathBuf> = [&request.result].into_iter().chain(inputs).chain(&request.past).cloned().collect();
+    let outputs: Vec<PathBuf> = [&request.html, &request.pdf, &request.dcc].into_iter().flatten().cloned().collect();
+    refuse_inputs(&outputs, &inputs)?;
+    if let Some(code) = request.code.as_ref().filter(|code| outputs.contains(code)) {
         return Err(Error::content(code, Place::Whole, "a document of the name of the folder for code", "two names"));
     }
     let language = request.language;

@@ -11,6 +11,6 @@ mod units;
 pub use self::charts::StoreCharts;
 pub use self::due::{due_comment, due_of_page, history_due_page};
 pub use self::frame::PageKind;
-pub use self::index::{IndexedModel, IndexedStation, history_index};
+pub use self::index::{Indexed, history_index};
 pub use self::pages::{history_model_page, history_station_page, history_unit_page, no_unit_history_page};
 pub use self::units::ListedUnit;

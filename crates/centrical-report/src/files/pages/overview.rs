@@ -5,14 +5,15 @@ use std::path::{Path, PathBuf};
 
 use centrical_session::{
     Calibrated, ChartLimits, ChartRequest, ComparedUnits, Date, Depth, Error, HistoryLine, HistoryList, OnProgress,
-    ParameterLimits, RuleSet, Selection, UnitsHistoryReport, UnitsHistoryRequest, advance, by_unit, chart, list_store,
-    read_batches, read_calibrations, read_limits, station_history, unit_means, units_history,
+    ParameterLimits, RuleSet, Selection, StationHistoryReport, UnitsHistoryReport, UnitsHistoryRequest, advance,
+    by_unit, chart, list_store, read_batches, read_calibrations, read_limits, station_history, unit_means,
+    units_history,
 };
 use rayon::prelude::*;
 
 use crate::render::{
-    IndexedModel, IndexedStation, ListedUnit, PageKind, StoreCharts, due_of_page, history_due_page, history_index,
-    history_model_page, history_station_page,
+    Indexed, ListedUnit, PageKind, StoreCharts, due_of_page, history_due_page, history_index, history_model_page,
+    history_station_page,
 };
 
 /// What the pages of a store show beside its calibrations.
@@ -133,7 +134,7 @@ fn stations(
     listed: Listed,
     request: &PagesRequest,
     pages: &mut BTreeMap<String, String>,
-) -> Vec<IndexedStation> {
+) -> Vec<Indexed<StationHistoryReport>> {
     let mut stations: BTreeMap<&str, Vec<&Calibrated>> = BTreeMap::new();
     for calibrated in calibrations {
         stations.entry(&calibrated.station).or_default().push(calibrated);
@@ -145,7 +146,7 @@ fn stations(
         let charts = charts(calibrations, &names, request.accepted);
         let units = listed.units(|line| line.station == report.station);
         pages.insert(PageKind::Station.file(&[&report.station]), history_station_page(&report, &units, &charts));
-        indexed.push(IndexedStation { has_signals: charts.has_signals(), report });
+        indexed.push(Indexed { has_signals: charts.has_signals(), report });
     }
     indexed
 }
@@ -156,7 +157,7 @@ fn models(
     asked: &UnitsHistoryRequest,
     request: &PagesRequest,
     pages: &mut BTreeMap<String, String>,
-) -> Vec<IndexedModel> {
+) -> Vec<Indexed<UnitsHistoryReport>> {
     let mut models: BTreeMap<String, Vec<Vec<Calibrated>>> = BTreeMap::new();
     for unit in by_unit(calibrations) {
         models.entry(unit[0].unit_model.clone()).or_default().push(unit);
@@ -174,7 +175,7 @@ fn models(
         let units = listed.units(|line| line.unit_model == report.unit_model);
         let page = history_model_page(&report, &values, &units, &asked.limits, &charts);
         pages.insert(PageKind::Model.file(&[&report.unit_model]), page);
-        indexed.push(IndexedModel { has_signals: charts.has_signals(), report });
+        indexed.push(Indexed { has_signals: charts.has_signals(), report });
     }
     indexed
 }

@@ -10,20 +10,11 @@ use crate::plot::Escaped;
 use crate::render::frame::Column::{Number, Words};
 use crate::render::frame::{Column, sortable};
 
-/// A model of units in the list of models.
+/// A model of units or a station in its list.
 #[derive(Debug, Clone, PartialEq)]
-pub struct IndexedModel {
-    /// What was found of its units.
-    pub report: UnitsHistoryReport,
-    /// Whether a control chart gives a signal.
-    pub has_signals: bool,
-}
-
-/// A station in the list of stations.
-#[derive(Debug, Clone, PartialEq)]
-pub struct IndexedStation {
+pub struct Indexed<R> {
     /// What was found of it.
-    pub report: StationHistoryReport,
+    pub report: R,
     /// Whether a control chart gives a signal.
     pub has_signals: bool,
 }
@@ -31,8 +22,8 @@ pub struct IndexedStation {
 /// The first page, with a link to each unit's file for which `has_page` holds, and to the list of due dates in the file `due`.
 pub fn history_index(
     list: &HistoryList,
-    models: &[IndexedModel],
-    stations: &[IndexedStation],
+    models: &[Indexed<UnitsHistoryReport>],
+    stations: &[Indexed<StationHistoryReport>],
     due: Option<&str>,
     has_page: impl Fn(&str) -> bool,
 ) -> String {
@@ -98,7 +89,7 @@ const OF_STATIONS: [Column; 8] = [
     Words("control charts"),
 ];
 
-fn model_row(body: &mut String, IndexedModel { report, has_signals }: &IndexedModel) {
+fn model_row(body: &mut String, Indexed { report, has_signals }: &Indexed<UnitsHistoryReport>) {
     let capability = report.parameters.iter().filter_map(|p| Some((p.name.as_str(), p.capability.as_ref()?.cpk)));
     let least = capability.min_by(|a, b| a.1.total_cmp(&b.1));
     let differ: Vec<&str> = report.parameters.iter().filter(|p| p.batches_differ).map(|p| p.name.as_str()).collect();
@@ -122,7 +113,7 @@ fn model_row(body: &mut String, IndexedModel { report, has_signals }: &IndexedMo
     );
 }
 
-fn station_row(body: &mut String, IndexedStation { report, has_signals }: &IndexedStation) {
+fn station_row(body: &mut String, Indexed { report, has_signals }: &Indexed<StationHistoryReport>) {
     let name = if report.station.is_empty() { "without a name" } else { &report.station };
     let changed: Vec<&str> = report.parameters.iter().filter(|p| p.changes).map(|p| p.name.as_str()).collect();
     let _ = writeln!(
