@@ -1,7 +1,7 @@
 //! The whole job for one session: what the command, a fleet's worker and a notebook all call.
 
 use centrical::uncertainty::BetweenRests;
-use centrical::{Calibration, Data, FitError, MeasurementModel, OnProgress, advance};
+use centrical::{Calibration, Data, MeasurementModel, OnProgress, advance};
 
 use super::reduce::reduce;
 use super::scale::refuse_scale;
@@ -41,7 +41,7 @@ impl Problem {
         if session.experiment.has_arm() {
             return Self::reduced(session.into_owned(), reduced);
         }
-        let (_, between) = by_noise(&session, &reduced, Method::Exact, progress, between_rests(progress))?;
+        let (_, between) = by_noise(&session, &reduced, Method::Exact, true, progress)?;
         let (session, reduced) = match between {
             Some(between) => with(&between, &session, &reduced),
             None => (session.into_owned(), reduced),
@@ -120,21 +120,11 @@ pub fn calibrate_reduced(
     method: Method,
     progress: OnProgress,
 ) -> Result<CalibrationResult, Error> {
-    let (result, between) = by_noise(session, reduced, method, progress, between_rests(progress))?;
+    let (result, between) = by_noise(session, reduced, method, true, progress)?;
     let Some(between) = between else { return Ok(result) };
     let (session, reduced) = with(&between, session, reduced);
-    let (result, ()) = by_noise(&session, &reduced, method, progress, |_, _| Ok(()))?;
+    let (result, _) = by_noise(&session, &reduced, method, false, progress)?;
     Ok(CalibrationResult { between_rests: Some(BetweenRestsSummary::from(between)), ..result })
-}
-
-/// What is between rests alone that are acceptable by their own noise: with the scatter added to it, a poor fit would pass.
-fn between_rests(
-    progress: OnProgress,
-) -> impl FnOnce(&Calibration, &CalibrationResult) -> Result<Option<BetweenRests>, FitError> {
-    move |calibration, result| {
-        let is_judged = result.validity.is_some() && result.objections().is_empty();
-        if is_judged { calibration.between_rests(&|()| progress(0)) } else { Ok(None) }
-    }
 }
 
 /// A session and its plateaus with what is between rests.
@@ -144,14 +134,15 @@ fn with(between: &BetweenRests, session: &Session, reduced: &Reduced) -> (Sessio
     (session, reduced.clone().scattered(between))
 }
 
-/// The calibration by the noise of the plateaus, and what is asked of it beside.
-fn by_noise<T>(
+/// The calibration by the noise of the plateaus, and what is between rests alone if that is `asked`: of rests that are acceptable by
+/// their own noise. With the scatter added to it, a poor fit would pass.
+fn by_noise(
     session: &Session,
     reduced: &Reduced,
     method: Method,
+    asked: bool,
     progress: OnProgress,
-    beside: impl FnOnce(&Calibration, &CalibrationResult) -> Result<T, FitError>,
-) -> Result<(CalibrationResult, T), Error> {
+) -> Result<(CalibrationResult, Option<BetweenRests>), Error> {
     let model = reduced.model(session)?;
     let failed = |source| Error::fit(&session.file, source);
     let data = Data::new(&model, reduced.observations()).map_err(failed)?;
@@ -163,8 +154,9 @@ fn by_noise<T>(
     advance(progress, 0)?;
     let calibration = calibration.map_err(failed)?;
     let result = as_result(&calibration, session, reduced, progress)?;
-    let beside = beside(&calibration, &result).map_err(failed)?;
-    Ok((result, beside))
+    let is_judged = asked && result.validity.is_some() && result.objections().is_empty();
+    let between = if is_judged { calibration.between_rests(&|()| progress(0)).map_err(failed)? } else { None };
+    Ok((result, between))
 }
 
 /// A calibration of a session that is reduced, with what its records show beside their means.
