@@ -1,13 +1,13 @@
 //! `truth.json`: what was simulated, schema `centrical-truth/1`.
 
-use centrical::simulate::{Counter, Equipment, Hand, Tachometer, TruePlateau, TrueRest};
+use centrical::simulate::{Counter, Equipment, Tachometer, TruePlateau, TrueRest};
 use centrical::{Kind, Parameter, SetPoint};
 use nalgebra::Vector3;
 use serde_json::{Value, json};
 
 use super::result::Program;
 use crate::experiment::Session;
-use crate::truth::Truth;
+use crate::truth::{Truth, settings};
 
 /// Name of the schema's present version.
 const SCHEMA: &str = "centrical-truth/1";
@@ -56,12 +56,11 @@ pub(crate) fn truth_json(truth: &Truth, seed: u64, written: &WrittenSession) -> 
         "program": Program::this(),
         "seed": seed,
         "parameters": parameters,
-        "settings": equipment(&truth.equipment),
+        "settings": equipment(&truth.equipment, !tumbles.is_empty()),
         "telemetry_clocks": clocks,
         "plateaus": plateaus,
     });
     if !tumbles.is_empty() {
-        whole["settings"]["hand"] = hand(&truth.equipment.hand);
         whole["rests"] = tumbles.iter().enumerate().flat_map(|(n, tumble)| rests_of(n, &tumble.rests)).collect();
         let tumble =
             |(n, tumble): (usize, &WrittenTumble)| json!({"tumble": n, "bias_change": tumble.bias_change.as_slice()});
@@ -76,15 +75,6 @@ fn rests_of(n: usize, rests: &[TrueRest]) -> Vec<Value> {
     rests.iter().enumerate().map(rest).collect()
 }
 
-/// What turns the unit, under the names that a truth file gives it, SI.
-fn hand(hand: &Hand) -> Value {
-    json!({
-        "rest": hand.rest, "rest_spread": hand.rest_spread, "turn": hand.turn, "turn_spread": hand.turn_spread,
-        "shake": hand.shake, "tremor": {"deviation": hand.tremor.deviation, "time": hand.tremor.time},
-        "bumps": {"probability": hand.bumps.probability, "size": hand.bumps.size}, "bias_change": hand.bias_change,
-    })
-}
-
 /// The plateaus of mounting `m`, named as in `result.json`: mounting from 1, index from 0.
 fn plateaus_of(plan: &Session, m: usize, plateaus: &[TruePlateau]) -> Vec<Value> {
     let schedule = plan.experiment.set_points.iter().filter(|s| s.mounting == m);
@@ -97,44 +87,32 @@ fn plateaus_of(plan: &Session, m: usize, plateaus: &[TruePlateau]) -> Vec<Value>
 }
 
 /// The equipment under the names that a truth file gives them, SI.
-fn equipment(equipment: &Equipment) -> Value {
-    let Equipment { machine, sensor, recorder, tachometer, counter, .. } = equipment;
-    let mut settings = json!({
-        "machine": {
-            "plateau": machine.plateau, "plateau_spread": machine.plateau_spread, "ramp": machine.ramp,
-            "speed_error": machine.speed_error, "settling": machine.settling, "settling_time": machine.settling_time,
-        },
-        "sensor": {
-            "white": sensor.white,
-            "coloured": {"deviation": sensor.coloured.deviation, "time": sensor.coloured.time},
-            "bias_instability": sensor.bias_instability, "random_walk": sensor.random_walk, "drift": sensor.drift,
-            "quantum": sensor.quantum, "range": sensor.range,
-        },
-        "recorder": {
-            "rate": recorder.rate,
-            "spikes": {"probability": recorder.spikes.probability, "size": recorder.spikes.size},
-            "gaps": {"probability": recorder.gaps.probability, "length": recorder.gaps.length},
-            "repeats": recorder.repeats,
-        },
-        "tachometer": {
-            "rate": tachometer.rate, "clock_offset": tachometer.clock_offset, "clock_drift": tachometer.clock_drift,
-            "noise": tachometer.noise, "quantum": tachometer.quantum,
-        },
-    });
+fn equipment(equipment: &Equipment, has_tumbles: bool) -> Value {
+    let Equipment { tachometer, counter, .. } = equipment;
+    let of_measured = ["tachometer.scale_error", "tachometer.plateau_error"];
+    let mut written = Value::Null;
+    let add = |written: &mut Value, is_added: &dyn Fn(&str) -> bool| {
+        for (name, number) in settings(*equipment).filter(|(name, _)| is_added(name)) {
+            *name.split('.').fold(&mut *written, |table, key| &mut table[key]) = number.into();
+        }
+    };
+    let is_optional =
+        |name: &str| name.starts_with("counter.") || name.starts_with("hand.") || of_measured.contains(&name);
+    add(&mut written, &|name| !is_optional(name));
     // Only what differs from equipment that measures no speed: a session without measured speeds keeps its bytes.
     let usual = Tachometer::default();
     if (tachometer.measures, tachometer.scale_error, tachometer.plateau_error)
         != (usual.measures, usual.scale_error, usual.plateau_error)
     {
-        settings["tachometer"]["measures"] = tachometer.measures.into();
-        settings["tachometer"]["scale_error"] = tachometer.scale_error.into();
-        settings["tachometer"]["plateau_error"] = tachometer.plateau_error.into();
+        written["tachometer"]["measures"] = tachometer.measures.into();
+        add(&mut written, &|name| of_measured.contains(&name));
     }
     if *counter != Counter::default() {
-        settings["counter"] = json!({
-            "per_revolution": counter.per_revolution, "jitter": counter.jitter, "scale_error": counter.scale_error,
-            "plateau_error": counter.plateau_error,
-        });
+        written["counter"]["per_revolution"] = counter.per_revolution.into();
+        add(&mut written, &|name| name.starts_with("counter."));
     }
-    settings
+    if has_tumbles {
+        add(&mut written, &|name| name.starts_with("hand."));
+    }
+    written
 }
