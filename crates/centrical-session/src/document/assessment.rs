@@ -7,6 +7,7 @@ use serde::Serialize;
 use super::documents::ObjectionName;
 use super::json::finite_degrees;
 use super::result::{BudgetSummary, Program, ResultObjection, ValiditySummary};
+use crate::experiment::PlateauName;
 
 /// Name of the schema's present version.
 pub const ASSESSMENT_SCHEMA: &str = "centrical-assessment/1";
@@ -218,8 +219,8 @@ impl AssessedFit {
 impl WithoutOutliers {
     fn of(experiment: &Experiment, fit: &Fit, left_out: &[(usize, f64)]) -> Self {
         let plateau = |&(set_point, probability): &(usize, f64)| {
-            let (mounting, index) = place(experiment, set_point);
-            LeftOutPlateau { mounting, index, probability }
+            let PlateauName { mounting, plateau } = PlateauName::among(&experiment.set_points, set_point);
+            LeftOutPlateau { mounting, index: plateau - 1, probability }
         };
         Self { left_out: left_out.iter().map(plateau).collect(), fit: AssessedFit::of(fit) }
     }
@@ -246,10 +247,10 @@ impl AssessedParameter {
 
 impl AssessedPlateau {
     fn of(experiment: &Experiment, check: &PlateauCheck) -> Self {
-        let (mounting, index) = place(experiment, check.set_point);
+        let PlateauName { mounting, plateau } = PlateauName::among(&experiment.set_points, check.set_point);
         Self {
             mounting,
-            index,
+            index: plateau - 1,
             standardised: check.standardised.into(),
             leverage: check.leverage,
             probability: check.prediction.probability,
@@ -261,11 +262,4 @@ impl From<&CurvePoint> for CompensatedUncertainty {
     fn from(&CurvePoint { force, components, along }: &CurvePoint) -> Self {
         Self { force, components, along }
     }
-}
-
-/// Mounting, counted from 1, and plateau in it, counted from 0.
-fn place(experiment: &Experiment, set_point: usize) -> (usize, usize) {
-    let mounting = experiment.set_points[set_point].mounting;
-    let before = experiment.set_points[..set_point].iter();
-    (mounting + 1, before.filter(|other| other.mounting == mounting).count())
 }

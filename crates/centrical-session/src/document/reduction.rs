@@ -7,7 +7,7 @@ use serde::Serialize;
 use super::json::rows;
 use super::result::Program;
 use super::steadiness::LeftOutSummary;
-use crate::experiment::Session;
+use crate::experiment::{PlateauName, Session};
 use crate::reduced::{MountingFindings, Reduced};
 
 /// Name of the schema's present version.
@@ -76,10 +76,9 @@ impl ReductionReport {
         let mut plateaus = Vec::with_capacity(set_points.len());
         let table = reduced.table(session);
         for (n, (row, plateau)) in table.iter().zip(&reduced.plateaus).enumerate() {
-            let before = set_points[..n].iter();
             plateaus.push(ReducedPlateauSummary {
                 mounting: row.mounting + 1,
-                index: before.filter(|other| other.mounting == row.mounting).count(),
+                index: PlateauName::of(session, n).plateau - 1,
                 speed: row.speed,
                 speed_uncertainty: row.speed_uncertainty,
                 angle: set_points[n].is_rest().then_some(row.angle),

@@ -7,6 +7,7 @@ use centrical::uncertainty::{
 use centrical::{Calibration, Experiment, FitError, Observation, SetPoint};
 use serde::{Deserialize, Serialize};
 
+use crate::experiment::PlateauName;
 use crate::reduced::{Reduced, ReducedPlateau, Steadiness};
 
 /// Samples that are not used, by kind.
@@ -180,8 +181,8 @@ pub enum SessionDriftVerdict {
 impl TiltSummary {
     fn new(tilt: &TiltComparison, set_points: &[SetPoint]) -> Self {
         let disturbed = |&(set_point, tilt): &(usize, f64)| {
-            let (mounting, index) = place(set_points, set_point);
-            DisturbedPlateau { mounting, index, tilt }
+            let PlateauName { mounting, plateau } = PlateauName::among(set_points, set_point);
+            DisturbedPlateau { mounting, index: plateau - 1, tilt }
         };
         Self {
             at_rest: tilt.at_rest,
@@ -337,21 +338,14 @@ fn beyond_speed(calibration: &Calibration, reduced: &Reduced, slopes: &[Slope], 
     slopes.iter().enumerate().map(beyond).collect()
 }
 
-/// The mounting of a set point, counted from 1, and its place in the schedule, counted from 0.
-fn place(set_points: &[SetPoint], set_point: usize) -> (usize, usize) {
-    let mounting = set_points[set_point].mounting;
-    let start = set_points.iter().position(|other| other.mounting == mounting).unwrap_or(0);
-    (mounting + 1, set_point - start)
-}
-
 fn repeated(calibration: &Calibration, reduced: &Reduced) -> Vec<RepeatedPlateau> {
     let model = calibration.data().model();
     let set_points = &model.experiment().set_points;
     let plateaus = reduced.plateaus.iter().enumerate();
     let plateaus: Vec<Observation> = plateaus.map(|(set_point, plateau)| plateau.observation(set_point)).collect();
     let summary = |repeat: Repeat| RepeatedPlateau {
-        mounting: place(set_points, repeat.set_points[0]).0,
-        indices: repeat.set_points.map(|set_point| place(set_points, set_point).1),
+        mounting: PlateauName::among(set_points, repeat.set_points[0]).mounting,
+        indices: repeat.set_points.map(|set_point| PlateauName::among(set_points, set_point).plateau - 1),
         difference: repeat.difference.into(),
         chi_squared: repeat.chi_squared,
         probability: repeat.probability,

@@ -1,7 +1,10 @@
 //! Plateaus as people name them.
 
+use std::fmt;
 use std::num::ParseIntError;
 use std::str::FromStr;
+
+use centrical::SetPoint;
 
 use super::session::Session;
 use crate::error::{Error, Place};
@@ -18,7 +21,11 @@ pub struct PlateauName {
 impl PlateauName {
     /// Name of the set point of that index.
     pub fn of(session: &Session, set_point: usize) -> Self {
-        let set_points = &session.experiment.set_points;
+        Self::among(&session.experiment.set_points, set_point)
+    }
+
+    /// The same in the schedule of all mountings.
+    pub(crate) fn among(set_points: &[SetPoint], set_point: usize) -> Self {
         let mounting = set_points[set_point].mounting;
         let plateau = set_points[..=set_point].iter().filter(|other| other.mounting == mounting).count();
         Self { mounting: mounting + 1, plateau }
@@ -33,10 +40,15 @@ impl PlateauName {
         let mut there = set_points.filter(|(_, set_point)| set_point.mounting + 1 == self.mounting);
         let found = self.plateau.checked_sub(1).and_then(|skipped| there.nth(skipped));
         found.map(|(index, _)| index).ok_or_else(|| {
-            let Self { mounting, plateau } = self;
-            let found = format!("no plateau {mounting}:{plateau}");
+            let found = format!("no plateau {self}");
             Error::content(&session.file, Place::Whole, found, "the numbers of a mounting and of one of its plateaus")
         })
+    }
+}
+
+impl fmt::Display for PlateauName {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}:{}", self.mounting, self.plateau)
     }
 }
 

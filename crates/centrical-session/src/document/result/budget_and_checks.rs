@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::rivals::RivalSummary;
 use crate::document::json::finite_degrees;
+use crate::experiment::PlateauName;
 
 /// The uncertainties by their sources.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -199,11 +200,10 @@ impl ValiditySummary {
             .plateaus
             .iter()
             .map(|check| {
-                let mounting = experiment.set_points[check.set_point].mounting;
-                let before = experiment.set_points[..check.set_point].iter();
+                let PlateauName { mounting, plateau } = PlateauName::among(&experiment.set_points, check.set_point);
                 OutlyingPlateau {
-                    mounting: mounting + 1,
-                    index: before.filter(|other| other.mounting == mounting).count(),
+                    mounting,
+                    index: plateau - 1,
                     standardised: check.standardised.into(),
                     probability: (family * check.prediction.probability).min(1.0),
                 }

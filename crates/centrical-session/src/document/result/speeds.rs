@@ -5,7 +5,7 @@ use centrical::uncertainty::{Extent, ShownSpeed, SpeedContradiction, StatedSpeed
 use centrical::{Calibration, Data, Experiment, FitError, SetPoint, Termination};
 use serde::{Deserialize, Serialize};
 
-use crate::experiment::{Session, SpeedSource};
+use crate::experiment::{PlateauName, Session, SpeedSource};
 use crate::reduced::{Reduced, ReducedPlateau};
 
 /// How the speeds are known; in a result only where they are measured or contradicted.
@@ -172,12 +172,7 @@ impl SpeedsSummary {
 
 impl SpeedDifference {
     fn new(session: &Session, found: &SpeedContradiction, of: usize) -> Self {
-        let set_points = &session.experiment.set_points;
-        let name = |n: &usize| {
-            let mounting = set_points[*n].mounting;
-            let before = set_points[..*n].iter().filter(|other| other.mounting == mounting).count();
-            format!("{}:{}", mounting + 1, before + 1)
-        };
+        let name = |n: &usize| PlateauName::of(session, *n).to_string();
         let (extent, mountings, speeds) = match &found.extent {
             Extent::All => (DifferenceExtent::All, Vec::new(), Vec::new()),
             Extent::Mountings(mountings) => {

@@ -325,7 +325,7 @@ impl<'a> Following<'a> {
             result => result?,
         };
         if let Some(names) = singled_out {
-            let names: Vec<String> = names.iter().map(|name| format!("{}:{}", name.mounting, name.plateau)).collect();
+            let names: Vec<String> = names.iter().map(PlateauName::to_string).collect();
             let instead = match &names[..] {
                 [] => "of all plateaus together none stands out, and the result holds none of them out".to_owned(),
                 names => format!(
