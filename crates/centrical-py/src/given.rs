@@ -47,8 +47,7 @@ impl GivenSession {
         let folder = in_memory(Folder::of(&file), files);
         let path = |name: String| folder.join(&name);
         let of_mounting = |(record, telemetry, pulses): NamesOfMounting| MountingFiles {
-            record: Some(path(record)),
-            further_records: None,
+            records: vec![path(record)],
             telemetry: telemetry.map(path),
             pulses: pulses.map(path),
         };

@@ -59,7 +59,7 @@ impl Folder {
     }
 
     /// Opens the record of a mounting: its file, or the three of its newtonometers.
-    pub(crate) fn open_record(&self, files: &[&Path]) -> Result<Vec<Source>, Error> {
+    pub(crate) fn open_record(&self, files: &[PathBuf]) -> Result<Vec<Source>, Error> {
         let expected = if files.len() == 1 { RECORD } else { NEWTONOMETER_RECORD };
         files.iter().map(|file| self.open(file, expected)).collect()
     }

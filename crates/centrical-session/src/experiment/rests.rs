@@ -180,7 +180,7 @@ impl RestTable {
     fn recorded(at: &TomlPath, folder: &Folder, table: &TumbleTable, record: &RecordEntry) -> Result<Self, Error> {
         refuse_duration(at, table)?;
         let attitudes = known(at, table)?.map(|(entry, u)| stated(at, folder, entry, u)).transpose()?;
-        let files = record.paths().map(|name| folder.join(name)).collect();
+        let files = record.0.iter().map(|name| folder.join(name)).collect();
         let radius = |q| at.bounded("turning_radius", q, Dimension::Length, (0.0, MOST_DISTANT), DISTANCE);
         let turning_radius = table.turning_radius.as_ref().map(radius).transpose()?;
         Ok(Self::of(RestSource::Record(RecordedRests { files, attitudes, turning_radius }), None))

@@ -8,7 +8,7 @@ use centrical::{
 };
 
 use super::folder::Folder;
-use super::form::{Form, ModelTable, MountingTable, RecordEntry, SiteTable};
+use super::form::{Form, ModelTable, MountingTable, SiteTable};
 use super::plateaus::PlateauTable;
 use super::prior::{self, PriorEntry};
 use super::rests::RestTable;
@@ -73,10 +73,8 @@ pub struct Session {
 /// The files of one mounting.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct MountingFiles {
-    /// The record; where every newtonometer has a file of its own, that of the first.
-    pub record: Option<PathBuf>,
-    /// The files of the second and the third newtonometer, where every one has its own.
-    pub further_records: Option<[PathBuf; 2]>,
+    /// The record, or three, one for each newtonometer; empty if there is none.
+    pub records: Vec<PathBuf>,
     /// The telemetry.
     pub telemetry: Option<PathBuf>,
     /// Times of the pulses of an index mark or an encoder.
@@ -87,19 +85,8 @@ impl MountingFiles {
     /// Those that a table names.
     fn of(folder: &Folder, table: &MountingTable) -> Self {
         let path = |name: &Option<String>| name.as_ref().map(|name| folder.join(name));
-        let (record, further_records) = match &table.record {
-            None => (None, None),
-            Some(RecordEntry::One(name)) => (Some(folder.join(name)), None),
-            Some(RecordEntry::Three([first, others @ ..])) => {
-                (Some(folder.join(first)), Some(others.each_ref().map(|name| folder.join(name))))
-            }
-        };
-        Self { record, further_records, telemetry: path(&table.telemetry), pulses: path(&table.pulses) }
-    }
-
-    /// The file of the record, or the three of the newtonometers.
-    pub fn records(&self) -> impl Iterator<Item = &PathBuf> {
-        self.record.iter().chain(self.further_records.iter().flatten())
+        let records = table.record.iter().flat_map(|record| &record.0).map(|name| folder.join(name)).collect();
+        Self { records, telemetry: path(&table.telemetry), pulses: path(&table.pulses) }
     }
 }
 

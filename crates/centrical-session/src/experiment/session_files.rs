@@ -7,7 +7,7 @@ use centrical::{OnProgress, unwatched};
 use centrical_table::{Extent, Source};
 
 use super::rests::RestTable;
-use super::session::{EXPERIMENT, MountingFiles, Session};
+use super::session::{EXPERIMENT, Session};
 use super::toml_path::TomlPath;
 use crate::error::Error;
 use crate::record::{PULSES, TELEMETRY, pulses_of, read_records, telemetry_of};
@@ -71,14 +71,14 @@ impl Session {
     /// Size of the records [bytes]; of a session that comes already averaged those of its rests alone. Records that are not there
     /// have none.
     pub fn record_bytes(&self) -> u64 {
-        let of_arm = self.mountings.iter().filter(|_| self.plateaus.is_none()).flat_map(MountingFiles::records);
+        let of_arm = self.mountings.iter().filter(|_| self.plateaus.is_none()).flat_map(|files| &files.records);
         let files = of_arm.chain(self.rest_records().flat_map(|(_, recorded)| &recorded.files));
         files.map(|file| self.folder.length(file)).sum()
     }
 
     /// All files of the session in the order they are named: the experiment file first.
     pub fn files(&self) -> Vec<&Path> {
-        let of_mountings = self.mountings.iter().flat_map(|m| m.records().chain(&m.telemetry).chain(&m.pulses));
+        let of_mountings = self.mountings.iter().flat_map(|m| m.records.iter().chain(&m.telemetry).chain(&m.pulses));
         let table = self
             .plateaus
             .iter()
@@ -90,7 +90,7 @@ impl Session {
     /// Opens the file of a mounting's record, or the three of its newtonometers.
     pub(crate) fn open_record(&self, mounting: usize) -> Result<Vec<Source>, Error> {
         self.record_file(mounting)?;
-        self.folder.open_record(&self.mountings[mounting].records().map(PathBuf::as_path).collect::<Vec<_>>())
+        self.folder.open_record(&self.mountings[mounting].records)
     }
 
     /// The text of the experiment file.
@@ -100,8 +100,8 @@ impl Session {
 
     /// The file of a mounting's record, the first of several.
     pub(crate) fn record_file(&self, mounting: usize) -> Result<&Path, Error> {
-        let record = self.mountings.get(mounting).and_then(|m| m.record.as_deref());
-        record.ok_or_else(|| {
+        let record = self.mountings.get(mounting).and_then(|m| m.records.first());
+        record.map(PathBuf::as_path).ok_or_else(|| {
             TomlPath::entry(&self.file, "mounting", mounting).unexpected("record", "no record", "the path of one")
         })
     }

@@ -88,7 +88,7 @@ pub fn compensate(
     let columns = match &request.session {
         Some(session) => {
             let session = Session::read(session)?;
-            if session.mountings.iter().any(|files| files.further_records.is_some()) {
+            if session.mountings.iter().any(|files| files.records.len() > 1) {
                 let expected = "a session whose records have the readings of all newtonometers in one file, as the record to \
                                 be compensated has them";
                 return Err(Error::content(&session.file, Place::Whole, "one file for each newtonometer", expected));

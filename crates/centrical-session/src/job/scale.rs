@@ -53,8 +53,7 @@ fn refuse_mountings(calibration: &Calibration, session: &Session) -> Result<(), 
         }
         if let Some(&(mounting, times)) = shares.iter().find(|(_, share)| is_off(*share)) {
             let files = session.mountings.get(mounting);
-            let record: Option<&PathBuf> =
-                files.and_then(|files| files.records().nth(axis).or_else(|| files.records().next()));
+            let record: Option<&PathBuf> = files.and_then(|files| files.records.get(axis).or(files.records.first()));
             let found = format!(
                 "readings of newtonometer {} in mounting {} of {times:.4} times the nominal specific force{}",
                 axis + 1,

@@ -52,7 +52,7 @@ impl Laboratory {
                 let (t, f): (Vec<f64>, Vec<f64>) = kept.map(|k| (record.t[k], record.f_z[j][k])).unzip();
                 write(&folder.join(name), j, &t, &f);
             }
-            let old = relative(files.record.as_ref().unwrap(), &whole);
+            let old = relative(files.records.first().unwrap(), &whole);
             assert!(text.contains(&format!("{old:?}")), "{old}");
             text = text.replace(&format!("{old:?}"), &format!("{names:?}"));
         }

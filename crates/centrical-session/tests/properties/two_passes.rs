@@ -17,7 +17,7 @@ fn as_parquet(folder: &Path) -> Session {
     let session = Session::read(&example()).unwrap();
     fs::create_dir_all(folder.join("records")).unwrap();
     for files in &session.mountings {
-        let file = files.record.as_ref().unwrap();
+        let file = files.records.first().unwrap();
         let name = file.file_stem().unwrap().to_str().unwrap();
         let mut writer = RecordWriter::create(&folder.join(format!("records/{name}.parquet"))).unwrap();
         writer.write(read_record(file, &session.columns).unwrap().as_slice()).unwrap();

@@ -49,20 +49,7 @@ pub(crate) struct StepsTable {
 
 /// The path of a record, or of three: one for each newtonometer.
 #[derive(Debug)]
-pub(crate) enum RecordEntry {
-    One(String),
-    Three([String; 3]),
-}
-
-impl RecordEntry {
-    /// The path, or the three.
-    pub fn paths(&self) -> impl Iterator<Item = &String> {
-        match self {
-            Self::One(path) => std::slice::from_ref(path).iter(),
-            Self::Three(paths) => paths.iter(),
-        }
-    }
-}
+pub(crate) struct RecordEntry(pub Vec<String>);
 
 /// Attitudes of rests: where up is, in axes of the case.
 #[derive(Debug, Clone, PartialEq)]
@@ -108,13 +95,16 @@ impl<'de> Deserialize<'de> for RecordEntry {
             }
 
             fn visit_str<E: de::Error>(self, path: &str) -> Result<RecordEntry, E> {
-                Ok(RecordEntry::One(path.to_owned()))
+                Ok(RecordEntry(vec![path.to_owned()]))
             }
 
             fn visit_seq<A: SeqAccess<'de>>(self, list: A) -> Result<RecordEntry, A::Error> {
                 let paths = Vec::<String>::deserialize(de::value::SeqAccessDeserializer::new(list))?;
-                let count = paths.len();
-                paths.try_into().map(RecordEntry::Three).map_err(|_| de::Error::invalid_length(count, &self))
+                if paths.len() == 3 {
+                    Ok(RecordEntry(paths))
+                } else {
+                    Err(de::Error::invalid_length(paths.len(), &self))
+                }
             }
         }
         deserializer.deserialize_any(EntryVisitor)

@@ -92,7 +92,7 @@ impl Seen {
         };
         let middles: Vec<[f64; 2]> = plateaus.iter().map(middle).collect();
         let columns = columns_of_records(&group.records);
-        let files: Vec<&std::path::Path> = group.records.iter().map(|file| file.path.as_path()).collect();
+        let files: Vec<_> = group.records.iter().map(|file| file.path.clone()).collect();
         let sources = Folder::default().open_record(&files)?;
         let mut reader = RecordReader::open_all(sources, centrical_table::Extent::Whole, &columns)?;
         while let Some(batch) = reader.next_batch()? {

@@ -98,11 +98,11 @@ impl Series {
         let none = |found: &str| Error::content(&session.file, Place::Whole, found, "a plateau at rest in a record");
         let set_point = set_point.ok_or_else(|| none("no plateau at rest"))?;
         let files = &session.mountings[set_points[set_point].mounting];
-        let (Some(window), Some(record)) = (reduced.plateaus[set_point].window, &files.record) else {
+        let (Some(window), Some(record)) = (reduced.plateaus[set_point].window, files.records.first()) else {
             return Err(none("plateaus already averaged"));
         };
         let columns = &session.columns;
-        if files.further_records.is_some() {
+        if files.records.len() > 1 {
             // A mean of neighbours has less noise than they have.
             if reduced.mountings[set_points[set_point].mounting].interpolated.is_some() {
                 let expected =

@@ -170,7 +170,7 @@ mod tests {
         std::io::copy(&mut fs::File::open(&plain).unwrap(), &mut encoder).unwrap();
         encoder.finish().unwrap();
         let mut reduced = |file: &PathBuf, bytes: usize| {
-            session.mountings[0].record = Some(file.clone());
+            session.mountings[0].records = vec![file.clone()];
             let budget = MemoryBudget::of(bytes);
             let mounting = reduce_mounting(&session, 0, &unwatched, &mut SampleCache::new(&budget)).unwrap();
             (format!("{:?}", mounting.reduced), mounting.overview)

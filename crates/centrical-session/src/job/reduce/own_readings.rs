@@ -99,7 +99,7 @@ pub(crate) fn refuse_copies<'m>(
             let chance =
                 PlateauMean::chance_of_likeness(&means[first], &means[second]).map(|chance| pairs as f64 * chance);
             if let Some(chance) = chance.filter(|chance| Level::Objection.is_passed_by(*chance)) {
-                let file = |number: usize| session.mountings[number].record.as_deref().unwrap_or(&session.file);
+                let file = |number: usize| session.mountings[number].records.first().unwrap_or(&session.file);
                 let chance = if chance > 0.0 { format!("of {chance:.0e}") } else { "below 1e-300".to_owned() };
                 let found = format!(
                     "the readings of mounting {}, {}: two records have means so alike with a probability {chance}",
@@ -123,7 +123,7 @@ fn readings<'a>(session: &'a Session, reduced: &'a Reduced) -> Vec<Readings<'a>>
         .iter()
         .enumerate()
         .flat_map(|(n, table)| vec![(arm + n, table.files().next()); table.count()]);
-    let of_mountings = session.mountings.iter().enumerate().map(|(n, files)| (n, files.record.as_ref()));
+    let of_mountings = session.mountings.iter().enumerate().map(|(n, files)| (n, files.records.first()));
     let owners: Vec<_> = of_mountings.chain(of_rests).collect();
     let set_points = session.experiment.set_points.iter().zip(&reduced.plateaus);
     let of_mean = set_points.filter_map(|(set_point, plateau)| {

@@ -108,8 +108,7 @@ pub(crate) fn with_all_rests<'s>(
 
 /// A record with its unit turned and left alone, in SI.
 fn record(session: &Session, recorded: &RecordedRests, progress: OnProgress) -> Result<Record, Error> {
-    let files: Vec<&Path> = recorded.files.iter().map(AsRef::as_ref).collect();
-    let sources = session.folder.open_record(&files)?;
+    let sources = session.folder.open_record(&recorded.files)?;
     read_records(sources, &session.columns, Extent::Whole, progress)
 }
 

@@ -189,9 +189,8 @@ impl<'s> Watch<'s> {
     /// Reads finished records again that were replaced since, once they look the same twice or have been left alone.
     fn look_at_finished(&mut self, stop: &AtomicBool, arrivals: &mut Vec<Observation>) -> Result<(), Error> {
         for mounting in 0..self.finished.len() {
-            let file = self.session.mountings[mounting].record.as_deref();
             // While it is replaced it may be gone for a moment.
-            let Some(look) = file.and_then(|file| self.look_of(mounting, file)) else { continue };
+            let Some(look) = self.look_of(mounting) else { continue };
             let [taken, last] = self.taken[mounting];
             if look.is_as(&taken) {
                 continue;
@@ -219,11 +218,11 @@ impl<'s> Watch<'s> {
     /// Looks at the record of the first mounting that is not finished; whether it is now.
     fn look_at_current(&mut self, stop: &AtomicBool, arrivals: &mut Vec<Observation>) -> Result<bool, Error> {
         let mounting = self.finished.len();
-        let Some(file) = self.session.mountings[mounting].record.as_deref() else {
+        let Some(file) = self.session.mountings[mounting].records.first() else {
             // The error of a session that names no record.
             return self.session.record(mounting).map(|_| false);
         };
-        let Some(look) = self.look_of(mounting, file) else {
+        let Some(look) = self.look_of(mounting) else {
             self.note = Some(Note::WaitingFor(file.to_owned()));
             return Ok(false);
         };
@@ -279,17 +278,17 @@ impl<'s> Watch<'s> {
     }
 
     /// `None` while there is no record.
-    fn look_of(&self, mounting: usize, file: &Path) -> Option<Look> {
-        let (mut bytes, mut changed) = (fs::metadata(file).ok()?.len(), fs::metadata(file).ok()?.modified().ok());
+    fn look_of(&self, mounting: usize) -> Option<Look> {
+        let (mut bytes, mut changed) = (0, None);
         // Where every newtonometer has a file, the last one to change counts.
-        for file in self.session.mountings[mounting].further_records.iter().flatten() {
+        for file in &self.session.mountings[mounting].records {
             let metadata = fs::metadata(file).ok()?;
             bytes += metadata.len();
             changed = changed.max(metadata.modified().ok());
         }
         let left_alone = changed.and_then(|changed| changed.elapsed().ok()).is_some_and(|age| age >= self.quiet);
-        let mut later = self.session.mountings[mounting + 1..].iter().filter_map(|m| m.record.as_deref());
-        Some(Look { bytes, changed, left_alone, followed: later.any(Path::exists) })
+        let mut later = self.session.mountings[mounting + 1..].iter().filter_map(|m| m.records.first());
+        Some(Look { bytes, changed, left_alone, followed: later.any(|file| file.exists()) })
     }
 
     /// The record of a mounting. Unless it has been left alone a last line without end is not read: it may have come in part.
@@ -384,7 +383,7 @@ impl<'s> Watch<'s> {
     }
 
     fn record_file(&self, mounting: usize) -> &Path {
-        self.session.mountings[mounting].record.as_deref().unwrap_or(Path::new(""))
+        self.session.mountings[mounting].records.first().map_or(Path::new(""), PathBuf::as_path)
     }
 }
 
