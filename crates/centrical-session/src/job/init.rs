@@ -5,18 +5,12 @@
 //! rest the axis that reads `+-g` is vertical, while spinning the axis that reads most lies along the arm. Their ratio to
 //! the square of the speed is the radius.
 
-mod attitude;
 mod column_names;
 mod draft;
 mod experiment_text;
 mod file_roles;
 mod findings;
 mod output_unit;
-mod path_text;
-mod raw;
-mod request;
-mod schedule;
-mod seats;
 mod sighting;
 mod tumbled;
 
@@ -25,8 +19,7 @@ use std::path::{Path, PathBuf};
 use centrical::OnProgress;
 
 pub use self::column_names::time_column;
-pub use self::draft::Draft;
-pub use self::request::InitRequest;
+pub use self::draft::{Draft, InitRequest};
 use self::tumbled::Tumbled;
 use crate::error::{Error, Place};
 

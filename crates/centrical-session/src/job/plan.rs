@@ -1,9 +1,6 @@
 //! The best plan for the time, or the shortest for the goals, with its report.
 
-mod frontier;
-mod read;
 mod report;
-mod request;
 mod schedule_file;
 
 use std::path::Path;
@@ -11,11 +8,11 @@ use std::path::Path;
 use centrical::OnProgress;
 use centrical_table::refuse_inputs;
 
-pub use self::read::{read_plan, read_planning};
 use self::report::report;
-pub use self::request::{PlanRequest, USUAL_LEVELS, USUAL_TIMES};
-use crate::document::PlanReport;
+pub use self::report::{PlanRequest, USUAL_LEVELS, USUAL_TIMES};
+use crate::document::{CalibrationResult, PlanReport};
 use crate::error::Error;
+use crate::experiment::{ExpectedValues, Plan, Planning};
 
 /// Plans as a plan file asks, and reports the plan. `progress` is called again and again; it changes nothing but whether the search
 /// goes on.
@@ -28,4 +25,36 @@ pub fn plan(file: &Path, request: &PlanRequest, progress: OnProgress<()>) -> Res
     refuse_inputs(&request.outputs, &inputs)?;
     let plan = planning.task.plan(request.certify, progress).map_err(|source| planning.failed(source))?;
     report(&planning, &plan, request, progress)
+}
+
+/// Reads a plan and the earlier result that it names; `None` for a session, as [`Plan::read`].
+///
+/// # Errors
+/// As [`Plan::read`] and [`CalibrationResult::read`].
+pub fn read_plan(path: &Path) -> Result<Option<Plan>, Error> {
+    let mut plan = Plan::read(path)?;
+    if let Some(plan) = &mut plan
+        && let Some(earlier) = &plan.earlier
+    {
+        plan.expect(&values(earlier)?);
+    }
+    Ok(plan)
+}
+
+/// Reads what is to be planned and the earlier result that it names; a `time` available [s] takes the place of the one in the file.
+///
+/// # Errors
+/// As [`Planning::read`] and [`CalibrationResult::read`].
+pub fn read_planning(path: &Path, time: Option<f64>) -> Result<Planning, Error> {
+    let mut planning = Planning::read(path, time)?;
+    if let Some(earlier) = &planning.earlier {
+        planning.expect(&values(earlier)?);
+    }
+    Ok(planning)
+}
+
+/// The values of an earlier result that are determined.
+fn values(result: &Path) -> Result<ExpectedValues, Error> {
+    let parameters = CalibrationResult::read(result)?.parameters.into_iter();
+    Ok(parameters.filter_map(|p| p.value.map(|value| (p.name, value))).collect())
 }

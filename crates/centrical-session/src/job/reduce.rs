@@ -1,7 +1,6 @@
 //! From a session's files to plateau means: the part of the work that is proportional to the data.
 
 mod in_memory;
-mod instead;
 mod mounting;
 mod own_readings;
 mod pooling;

@@ -2,7 +2,6 @@
 
 mod ledger;
 mod one;
-mod request;
 mod table;
 mod workers;
 
@@ -15,7 +14,7 @@ use centrical_table::{Outputs, claim_folder};
 
 use self::ledger::Ledger;
 pub use self::ledger::last_rows;
-pub use self::request::SeriesRequest;
+pub use self::one::SeriesRequest;
 use self::table::write_tables;
 use self::workers::Workers;
 use crate::document::SeriesSummary;

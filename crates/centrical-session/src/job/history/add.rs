@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use centrical::{OnProgress, advance, unwatched};
 use rayon::prelude::*;
 
-use super::results::collect_results;
+use super::read::collect_results;
 use crate::document::CalibrationResult;
 use crate::error::{Error, Place, quoted};
 use crate::quantity::Date;

@@ -3,7 +3,6 @@
 mod errors;
 mod kinds;
 mod output;
-mod shared_errors;
 
 use std::sync::Arc;
 
@@ -11,11 +10,10 @@ use centrical::history::{Point, Series, SessionEstimates};
 use centrical_compensate::Term;
 use nalgebra::{DMatrix, DVector};
 
-use self::errors::OwnErrors;
+use self::errors::{OwnErrors, SharedErrors};
 use self::kinds::Role;
 pub use self::kinds::{CalibratedParameter, Kinds, Places};
 use self::output::{Restated, in_changes, in_covariance, in_values};
-use self::shared_errors::SharedErrors;
 use super::of_data::OfData;
 use crate::document::{OutputSummary, PastSession};
 use crate::quantity::Date;

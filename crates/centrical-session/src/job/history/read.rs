@@ -1,16 +1,17 @@
-//! Calibrations from results, folders of results, and stores.
+//! Calibrations from results, folders of results, and stores; batches of units, and limits of a laboratory.
 
 use std::collections::{BTreeMap, HashSet};
+use std::fs;
 use std::path::{Path, PathBuf};
 
 use centrical::{OnProgress, advance};
 
-use super::calibrated::{Calibrated, Kinds};
-use super::results::collect_results;
+use super::calibrated::{Calibrated, CalibratedParameter, Kinds};
 use crate::document::{CalibrationResult, OutputSummary, unit_name};
 use crate::error::{Error, Place, quoted};
+use crate::laboratory::{Laboratory, Limitable, Limited};
 use crate::quantity::Date;
-use crate::settings::read_result;
+use crate::settings::{read_result, read_settings};
 use crate::store::{Depth, Row, Selection, Status, Store};
 
 /// Calibrations of the past.
@@ -135,4 +136,95 @@ impl Found<'_> {
         self.past.calibrations.push(if is_condensed { calibrated.condensed() } else { calibrated });
         Ok(())
     }
+}
+
+/// Name of a result in a folder.
+const RESULT: &str = "result.json";
+
+/// Adds the file, or every result in a folder and below, by name.
+///
+/// # Errors
+/// [`Error`] when a folder cannot be read.
+pub fn collect_results(path: &Path, files: &mut Vec<PathBuf>) -> Result<(), Error> {
+    if !path.is_dir() {
+        files.push(path.to_owned());
+        return Ok(());
+    }
+    walk(path, files)
+}
+
+fn walk(folder: &Path, files: &mut Vec<PathBuf>) -> Result<(), Error> {
+    let failed = |error| Error::reading(folder, error, "a folder of results");
+    let mut entries = Vec::new();
+    for entry in fs::read_dir(folder).map_err(failed)? {
+        let entry = entry.map_err(failed)?;
+        // A link to a folder may lead back here.
+        entries.push((entry.path(), entry.file_type().map_err(failed)?.is_dir()));
+    }
+    entries.sort();
+    for (path, is_folder) in entries {
+        if is_folder {
+            walk(&path, files)?;
+        } else if path.file_name().is_some_and(|name| name == RESULT) {
+            files.push(path);
+        }
+    }
+    Ok(())
+}
+
+/// Batches by serial number: a text with a serial number and a batch in each line, divided by a comma, a semicolon or a tab; a first line
+/// "serial,batch", blank lines and lines that begin with "#" do not count.
+///
+/// # Errors
+/// [`Error`] for a line of other than two words, and a unit in two batches.
+pub fn read_batches(file: &Path) -> Result<BTreeMap<String, String>, Error> {
+    let text = read_settings(file, "a table of serial numbers and batches")?;
+    let mut batches = BTreeMap::new();
+    // Spreadsheets write a byte order mark.
+    for (n, line) in text
+        .trim_start_matches('\u{feff}')
+        .lines()
+        .enumerate()
+        .filter(|(_, line)| !line.trim().is_empty() && !line.starts_with('#'))
+    {
+        let words: Vec<&str> = line.split([',', ';', '\t']).map(str::trim).collect();
+        let refuse = |expected: &str| {
+            let place = Place::Line { line: n as u64 + 1, column: None };
+            Err(Error::content(file, place, quoted(line.as_bytes()), expected))
+        };
+        match words.as_slice() {
+            ["serial", "batch"] if batches.is_empty() => {}
+            [serial, batch] if !serial.is_empty() && !batch.is_empty() => {
+                let before = batches.insert((*serial).to_owned(), (*batch).to_owned());
+                if before.is_some_and(|before| before != *batch) {
+                    return refuse("each unit in one batch");
+                }
+            }
+            _ => return refuse("a serial number and a batch, divided by a comma"),
+        }
+    }
+    Ok(batches)
+}
+
+/// Limits of parameters by name, SI: lowest and highest value.
+pub type ParameterLimits = BTreeMap<String, (Option<f64>, Option<f64>)>;
+
+/// The limits of parameters in the decision of the laboratory's `file`, for the parameters of `calibrations`. Limits of the compensated reading
+/// are passed over.
+///
+/// # Errors
+/// [`Error`] when the file is wrong, or a limit names no parameter of any of the calibrations.
+pub fn read_limits(file: &Path, calibrations: &[Calibrated]) -> Result<ParameterLimits, Error> {
+    let laboratory = Laboratory::read(file)?;
+    let mut by_name: BTreeMap<&str, &CalibratedParameter> = BTreeMap::new();
+    for calibrated in calibrations {
+        by_name.extend(calibrated.parameters.iter().map(|p| (p.name.as_str(), p)));
+    }
+    let parameters = by_name.values().map(|p| Limitable { name: &p.name, unit: &p.unit, group: p.group });
+    let limits = laboratory.limits(file, &parameters.collect::<Vec<_>>())?;
+    let of_parameter = limits.into_iter().filter_map(|limit| match limit.of {
+        Limited::Parameter(name) => Some((name, (limit.low.map(|end| end.si), limit.high.map(|end| end.si)))),
+        Limited::CompensatedReading(_) => None,
+    });
+    Ok(of_parameter.collect())
 }

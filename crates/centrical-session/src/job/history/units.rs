@@ -10,8 +10,8 @@ use rayon::prelude::*;
 use super::calibrated::{Basis, Calibrated, Finder, Places, series, single};
 use super::check::spelling;
 use super::comparable::ComparedUnits;
-use super::limits::ParameterLimits;
 use super::no_history::NoHistory;
+use super::read::ParameterLimits;
 use super::unit::{UnitHistoryRequest, common_names};
 use crate::document::{
     BatchSummary, BatchWithoutUnit, BeyondLimit, CapabilitySummary, NotComparedParameter, OutlyingUnit, Program,

@@ -4,17 +4,12 @@ use std::path::Path;
 
 use centrical_table::{ColumnName, DecimalSign, TextForm};
 
-use super::attitude::Attitude;
 use super::column_names::Label;
-use super::draft::{Draft, UNKNOWN};
+use super::draft::{Draft, InitRequest, UNKNOWN, relative};
 use super::file_roles::{FileColumns, Unused};
-use super::findings::Findings;
+use super::findings::{Attitude, Findings, Set};
 use super::output_unit::OutputUnit;
-use super::path_text::relative;
-use super::raw::Raw;
-use super::request::InitRequest;
-use super::schedule::Set;
-use super::sighting::SeenMounting;
+use super::sighting::{Raw, SeenMounting};
 use super::tumbled::Tumbled;
 use crate::error::Error;
 use crate::settings::toml_text;

@@ -2,8 +2,7 @@
 
 use centrical::STANDARD_GRAVITY;
 
-use super::raw::{Extremes, Raw};
-use super::sighting::SeenMounting;
+use super::sighting::{Extremes, Raw, SeenMounting};
 use super::tumbled::Tumbled;
 use crate::error::{Error, Place};
 use crate::experiment::OutputUnit as Output;

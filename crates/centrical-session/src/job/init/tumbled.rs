@@ -2,9 +2,8 @@
 
 use std::path::Path;
 
-use super::draft::Draft;
-use super::path_text::relative;
-use super::raw::Raw;
+use super::draft::{Draft, relative};
+use super::sighting::Raw;
 use crate::error::{Error, Place};
 use crate::experiment::{KnownAttitudes, OutputUnit, RestTable, Session};
 use crate::settings::toml_text;

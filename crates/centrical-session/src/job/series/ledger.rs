@@ -5,7 +5,8 @@
 //! reading.
 
 use std::collections::BTreeMap;
-use std::fs::{self, File, OpenOptions};
+use std::fs;
+use std::fs::{File, OpenOptions};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::UNIX_EPOCH;
@@ -14,8 +15,7 @@ use centrical::unwatched;
 use centrical_table::{Source, write_whole};
 use serde::{Deserialize, Serialize};
 
-use super::one::Done;
-use super::request::LEDGER;
+use super::one::{Done, LEDGER};
 use crate::document::{Method, json_line};
 use crate::error::{Error, ErrorKind};
 use crate::record::Input;

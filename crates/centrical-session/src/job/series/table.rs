@@ -8,7 +8,7 @@ use centrical::unwatched;
 use centrical_table::{csv_field, harmless, write_whole};
 
 use super::ledger::Ledger;
-use super::request::SeriesRequest;
+use super::one::SeriesRequest;
 use crate::document::{FailedSession, SeriesSummary};
 use crate::error::Error;
 use crate::store::{Depth, Row, Selection, Status, Store};

@@ -1,19 +1,17 @@
 //! The sessions of a series on threads: each has one session and computes it alone, so that no core waits for another.
 
-use std::mem;
 use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
-use std::thread;
 use std::time::{Duration, Instant};
+use std::{mem, thread};
 
 use centrical::{OnProgress, Stopped, unwatched};
 use rayon::ThreadPoolBuilder;
 
 use super::ledger::Ledger;
-use super::one::{Done, calibrated};
-use super::request::SeriesRequest;
+use super::one::{Done, SeriesRequest, calibrated};
 use crate::error::Error;
 use crate::store::Store;
 
