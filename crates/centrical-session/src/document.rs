@@ -9,7 +9,6 @@ mod documents;
 mod draft;
 mod history;
 mod history_list;
-mod impossible;
 mod json;
 mod models;
 mod montecarlo;
@@ -36,8 +35,6 @@ pub use self::comparison::{ComparedResultSummary, ComparisonReport, DifferenceSu
 pub use self::compensation::{COMPENSATION_SCHEMA, CompensationReport, FirstReading, ReadingsBeyond};
 pub use self::documents::{DocumentKind, DocumentsReport, ObjectionName, WrittenDocument};
 pub use self::draft::{DraftReport, LineToFillIn};
-pub(crate) use self::history::FAMILY;
-pub(crate) use self::history::shown_readings;
 pub use self::history::{
     BatchSummary, BatchWithoutUnit, BeyondLimit, CHART_SCHEMA, CapabilitySummary, ChartKind, ChartReport, ChartRule,
     ChartSignal, DeviatingSession, DueDate, LeftOutSession, NotComparedParameter, OutlyingUnit, PastSession,
@@ -45,6 +42,7 @@ pub use self::history::{
     UNIT_HISTORY_SCHEMA, UNITS_HISTORY_SCHEMA, UnitFinding, UnitFindingKind, UnitHistoryReport, UnitParameter,
     UnitsHistoryReport, UnitsParameter, UntestedStation,
 };
+pub(crate) use self::history::{FAMILY, shown_readings};
 pub use self::history_list::{Doubt, DoubtKind, HistoryLine, HistoryList};
 pub(crate) use self::json::line as json_line;
 pub use self::models::{CandidateSummary, ModelsReport, NestedTestSummary, TermSupport};

@@ -9,10 +9,11 @@ mod overview;
 mod passes;
 mod reader;
 mod sample_cache;
-mod units_found;
 mod writer;
 
-pub(crate) use self::checked_table::{CheckedTable, Form as TableForm, NEWTONOMETER_RECORD, PULSES, RECORD, TELEMETRY};
+pub(crate) use self::checked_table::{
+    CheckedTable, Form as TableForm, NEWTONOMETER_RECORD, PULSES, RECORD, StatedUnits, TELEMETRY,
+};
 pub(crate) use self::columns::named_columns;
 pub use self::columns::{Column, Columns, MissingReadings, Scale};
 pub(crate) use self::equal_columns::EqualColumns;
@@ -23,5 +24,4 @@ pub(crate) use self::passes::RecordFile;
 pub use self::reader::{RecordReader, read_record, read_telemetry, stretch};
 pub(crate) use self::reader::{pulses_of, read_records, telemetry_of};
 pub(crate) use self::sample_cache::{MemoryBudget, SampleCache};
-pub(crate) use self::units_found::StatedUnits;
 pub use self::writer::RecordWriter;

@@ -10,7 +10,6 @@ mod part;
 mod reading;
 mod row;
 mod schema;
-mod table;
 mod writing;
 
 pub use self::folder::Store;
@@ -19,5 +18,4 @@ pub(crate) use self::row::packed;
 pub use self::row::{Failure, Row, RowPrior, SharedInfluence, Status, TermSummary, days_since_1970, sha256};
 pub use self::schema::Depth;
 pub(crate) use self::schema::whole;
-pub use self::table::RowTable;
-pub use self::writing::Added;
+pub use self::writing::{Added, RowTable};

@@ -4,14 +4,12 @@
 //! ended earlier or lost a sample, is a gap of all. Files of three recorders have stamps or rates of their own, on one clock:
 //! readings are interpolated to the stamps of the slowest file, neither beyond the ends of a file nor across its gaps.
 
-mod interpolation;
 mod part;
 mod stamps;
 
 use centrical_table::{Extent, Rows, Source};
 
-use self::interpolation::{Reading, reading_at};
-use self::part::Part;
+use self::part::{Part, Reading, reading_at};
 use self::stamps::Joining;
 use super::columns::Columns;
 use crate::error::{Error, Place};
