@@ -67,7 +67,7 @@ pub use self::result::{
     ConvergenceSummary, DifferenceExtent, FitSummary, FollowedSpeeds, Follows, Method, ModelSummary,
     MountingPrediction, MountingSummary, NextAttitudeSummary, ObservabilitySummary, OutlyingPlateau, OutputSummary,
     ParameterEstimate, PatternSummary, PlateauSummary, PositionSummary, PriorSummary, Program, RestsOn,
-    ResultObjection, RivalSize, RivalSummary, SCHEMA, SessionSummary, SpeedDifference, SpeedFinding, SpeedsSummary,
+    ResultObjection, RivalSize, RivalSummary, SessionSummary, SpeedDifference, SpeedFinding, SpeedsSummary,
     ValiditySummary, unit_name,
 };
 pub use self::series::{FailedSession, SeriesSummary};
@@ -86,7 +86,7 @@ pub use self::watch::{
 json::documents! {
     AddedReport: added::ADDED_SCHEMA,
     AssessmentReport: assessment::ASSESSMENT_SCHEMA,
-    CalibrationResult: SCHEMA,
+    CalibrationResult: result::SCHEMA,
     ChartReport: CHART_SCHEMA,
     ComparisonReport: comparison::COMPARISON_SCHEMA,
     CompensationReport: COMPENSATION_SCHEMA,

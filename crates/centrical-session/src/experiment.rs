@@ -31,7 +31,7 @@ pub(crate) use self::form::{Form as ExperimentForm, PlanForm};
 pub use self::plan::{ExpectedValues, Plan};
 pub use self::plateau_name::PlateauName;
 pub(crate) use self::plateaus::LARGEST_SCALE_ERROR;
-pub use self::plateaus::{PlateauMean, PlateauTable, read_plateaus};
+pub use self::plateaus::{PlateauMean, PlateauTable};
 pub use self::plateaus_written::write_plateaus;
 pub(crate) use self::plateaus_written::write_plateaus_parquet;
 pub use self::rests::{KnownAttitudes, PlannedRests, RecordedRests, RestSource, RestTable};

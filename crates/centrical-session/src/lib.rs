@@ -59,7 +59,7 @@ pub use document::{
     ObservabilitySummary, ObservedParameter, OutlyingPlateau, OutputSummary, PairReport, ParameterEstimate,
     PatternSummary, PlanReport, PlannedMounting, PlannedPlateau, PlateauDriftVerdict, PlateauSummary, PositionSummary,
     PredictedParameter, PredictionReport, PriorSummary, Program, ReadingNoise, ReasonReport, RemedyReport,
-    RepeatedPlateau, RestsOn, ResultObjection, RivalSize, RivalSummary, SCHEMA, SessionDriftVerdict, SessionSummary,
+    RepeatedPlateau, RestsOn, ResultObjection, RivalSize, RivalSummary, SessionDriftVerdict, SessionSummary,
     SessionTrend, SightReport, SpeedDifference, SpeedFinding, SpeedsSummary, StepReport, Subject, TiltSummary,
     TiltVerdict, ValiditySummary, WatchState, WatchedPlateau, read_history, unit_name,
 };
@@ -73,7 +73,7 @@ pub use error::{Error, ErrorKind, NoErrorModel, Place};
 pub use experiment::{
     Folder, KnownAttitudes, Measured, MountingFiles, OutputUnit, Plan, PlannedRests, Planning, PlateauMean,
     PlateauName, PlateauTable, RecordedRests, RestSource, RestTable, Session, SpeedSource, Speeds, StatedAttitudes,
-    Turning, available_time, read_plateaus, write_plateaus,
+    Turning, available_time, write_plateaus,
 };
 pub use job::{
     AssessmentRequest, Axes, ComparisonRequest, Compensated, CompensationRequest, Draft, InitRequest, LiveRequest,
@@ -94,14 +94,10 @@ pub use laboratory::{
     LaboratoryTable, Limit, LimitEnd, Limitable, Limited, MethodTable, Person, Standard, StatedLimit,
 };
 pub use quantity::{Date, Dimension, NotADay, NotThatQuantity, Quantity};
-pub use record::{
-    Column, Columns, Input, MissingReadings, RecordOverview, RecordReader, RecordWriter, Scale, read_record,
-    read_telemetry, stretch,
-};
+pub use record::{Column, Columns, Input, MissingReadings, RecordOverview, RecordReader, RecordWriter, Scale, stretch};
 pub use reduced::{MountingFindings, Reduced, ReducedPlateau, Steadiness};
 pub use store::{
-    Added, Depth, Failure, Row, RowPrior, RowTable, Rows, Selection, SharedInfluence, Status, Store, TermSummary,
-    sha256,
+    Added, Depth, Failure, Row, RowPrior, Rows, Selection, SharedInfluence, Status, Store, TermSummary, sha256,
 };
 pub use truth::Truth;
 pub use units::{MICRO_G, Symbol, Unit, UnknownUnit, customary, rpm};

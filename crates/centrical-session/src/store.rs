@@ -18,4 +18,5 @@ pub(crate) use self::row::packed;
 pub use self::row::{Failure, Row, RowPrior, SharedInfluence, Status, TermSummary, days_since_1970, sha256};
 pub use self::schema::Depth;
 pub(crate) use self::schema::whole;
-pub use self::writing::{Added, RowTable};
+pub use self::writing::Added;
+pub(crate) use self::writing::RowTable;

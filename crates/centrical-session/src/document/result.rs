@@ -22,9 +22,10 @@ pub use self::budget_and_checks::{
 pub use self::from_calibration::unit_name;
 pub use self::next_attitude::NextAttitudeSummary;
 pub use self::rivals::{RestsOn, RivalSize, RivalSummary};
+pub(super) use self::schema::SCHEMA;
 pub use self::schema::{
     CalibrationResult, ConvergenceSummary, FitSummary, Method, ModelSummary, MountingSummary, ObservabilitySummary,
-    OutputSummary, ParameterEstimate, PlateauSummary, PositionSummary, PriorSummary, Program, SCHEMA, SessionSummary,
+    OutputSummary, ParameterEstimate, PlateauSummary, PositionSummary, PriorSummary, Program, SessionSummary,
 };
 pub use self::speeds::{DifferenceExtent, FollowedSpeeds, SpeedDifference, SpeedFinding, SpeedsSummary};
 pub use self::verdict::ResultObjection;

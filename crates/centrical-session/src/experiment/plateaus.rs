@@ -256,19 +256,14 @@ const COVARIANCE: usize = 6;
 /// Place of `samples` among the columns, the last that every table has.
 const SAMPLES: usize = COLUMNS.len() - 1;
 
-/// Reads the table of `file` for a session of that many mountings.
+/// What a table of plateaus is expected to be.
+pub(super) const PLATEAUS: &str = "a table of plateaus";
+
+/// Reads a table with these further columns for a session of that many mountings.
 ///
 /// # Errors
 /// If the file can not be read or lacks a column; if a row names no mounting, rests without an angle, or has a
 /// covariance that is not positive definite.
-pub fn read_plateaus(file: &Path, mountings: usize) -> Result<Vec<PlateauMean>, Error> {
-    plateaus_of(&Source::open(file, PLATEAUS)?, mountings, Further::Nothing)
-}
-
-/// What a table of plateaus is expected to be.
-pub(super) const PLATEAUS: &str = "a table of plateaus";
-
-/// The same of a source, with further columns.
 pub(super) fn plateaus_of(source: &Source, mountings: usize, further: Further) -> Result<Vec<PlateauMean>, Error> {
     let columns: Vec<_> = COLUMNS.iter().chain(further.columns()).collect();
     let field = |(k, (name, expected)): (usize, &&(&str, &str))| Field {

@@ -40,7 +40,7 @@ mod tests {
     use centrical_table::Source;
     use nalgebra::{Matrix3, Vector3};
 
-    use super::super::plateaus::{PLATEAUS, plateaus_of, read_plateaus};
+    use super::super::plateaus::{PLATEAUS, plateaus_of};
     use super::*;
 
     #[test]
@@ -61,7 +61,8 @@ mod tests {
         };
         let spin = PlateauMean { mounting: 0, speed: 14.0 / 3.0, angle: 0.0, ..rest };
         write_plateaus(&file, &[rest, spin]).unwrap();
-        assert_eq!(read_plateaus(&file, 2).unwrap(), [rest, spin]);
+        let table = Source::open(&file, PLATEAUS).unwrap();
+        assert_eq!(plateaus_of(&table, 2, Further::Nothing).unwrap(), [rest, spin]);
         let measured = PlateauMean { speed: -14.0 / 3.0, speed_uncertainty: Some(1e-6 / 3.0), ..spin };
         write_plateaus(&file, &[rest, measured]).unwrap();
         let table = Source::open(&file, PLATEAUS).unwrap();

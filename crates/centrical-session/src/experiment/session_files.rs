@@ -17,7 +17,7 @@ impl Session {
     /// Reads the whole record of a mounting, by its index.
     ///
     /// # Errors
-    /// If the mounting has no record, or as [`read_record`].
+    /// If the mounting has no record, or as [`RecordReader`](crate::RecordReader).
     pub fn record(&self, mounting: usize) -> Result<Record, Error> {
         self.record_to(mounting, Extent::Whole, &unwatched)
     }
@@ -33,7 +33,7 @@ impl Session {
     /// Reads the telemetry of a mounting, if it has any.
     ///
     /// # Errors
-    /// As [`read_record`].
+    /// As [`RecordReader`](crate::RecordReader).
     pub fn telemetry(&self, mounting: usize) -> Result<Option<SpeedTrace>, Error> {
         self.telemetry_to(mounting, Extent::Whole)
     }
@@ -47,7 +47,7 @@ impl Session {
     /// Reads the pulses of a mounting, if it has any.
     ///
     /// # Errors
-    /// As [`read_record`].
+    /// As [`RecordReader`](crate::RecordReader).
     pub fn pulses(&self, mounting: usize) -> Result<Option<PulseTrain>, Error> {
         self.pulses_to(mounting, Extent::Whole)
     }

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use centrical::reduction::{Record, RecordSlice, SpeedTrace};
-use centrical::{OnProgress, advance, unwatched};
+use centrical::{OnProgress, advance};
 use centrical_table::{Extent, Index, Reread, Rows, Source, Stamps, TableLines};
 
 use super::checked_table::{CheckedTable, Form, PULSES, RECORD, TELEMETRY};
@@ -11,14 +11,6 @@ use super::columns::{Column, Columns, MissingReadings, Scale};
 use super::equal_columns::EqualColumns;
 use super::joined::Joined;
 use crate::error::Error;
-
-/// Reads the whole record of `file`.
-///
-/// # Errors
-/// As [`RecordReader::next_batch`].
-pub fn read_record(file: &Path, columns: &Columns) -> Result<Record, Error> {
-    RecordReader::open(file, columns)?.into_record(&unwatched)
-}
 
 /// Reads the record of a mounting in its file, or in the three of its newtonometers, as far as it was written. `progress` is
 /// called with the number of bytes read.
@@ -38,7 +30,7 @@ pub(crate) fn read_records(
 ///
 /// # Errors
 /// As [`RecordReader::next_batch`].
-pub fn read_telemetry(file: &Path, columns: &Columns) -> Result<SpeedTrace, Error> {
+pub(crate) fn read_telemetry(file: &Path, columns: &Columns) -> Result<SpeedTrace, Error> {
     telemetry_of(Source::open(file, TELEMETRY)?, columns, Extent::Whole)
 }
 
@@ -194,7 +186,11 @@ impl RecordReader {
         reader.into_index().map(|index| RecordIndex { index, scales, missing })
     }
 
-    fn into_record(mut self, progress: OnProgress) -> Result<Record, Error> {
+    /// All that is left of the record. `progress` is called with the number of bytes read.
+    ///
+    /// # Errors
+    /// As [`RecordReader::next_batch`]; [`Error::Stopped`].
+    pub fn into_record(mut self, progress: OnProgress) -> Result<Record, Error> {
         let mut record = Record::default();
         while let Some(batch) = self.next_batch()? {
             for rows in batch {

@@ -212,23 +212,21 @@ fn stream(part: &Part) -> impl Iterator<Item = Result<Row, Error>> + '_ {
 const GROUP: usize = 1024;
 
 /// A table in the making: the sessions in a column `session`, then the columns of a part but for covariances and shared influences.
-pub struct RowTable {
+pub(crate) struct RowTable {
     table: TypedWriter,
 }
 
-impl Store {
+impl RowTable {
     /// Begins a table of rows.
     ///
     /// # Errors
     /// [`Error`] if the folder does not take it.
-    pub fn begin_table(&self, file: &Path) -> Result<RowTable, Error> {
+    pub fn create(file: &Path) -> Result<Self, Error> {
         let session = TypedColumn { name: "session", kind: Kind::Text };
         let columns: Vec<_> = std::iter::once(session).chain(entries().map(|entry| entry.column)).collect();
-        Ok(RowTable { table: TypedWriter::create(file, &columns, &[(SCHEMA_NOTE, ROWS_SCHEMA)])? })
+        Ok(Self { table: TypedWriter::create(file, &columns, &[(SCHEMA_NOTE, ROWS_SCHEMA)])? })
     }
-}
 
-impl RowTable {
     /// Adds rows by the names of their sessions.
     ///
     /// # Errors

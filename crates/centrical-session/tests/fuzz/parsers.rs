@@ -1,8 +1,9 @@
 //! Every parser of the crate: what it begins with and how it is called.
 
+use std::fs;
 use std::path::{Path, PathBuf};
 
-use centrical_session::{CalibrationResult, Laboratory, Session, Truth, WatchState, read_plan, read_plateaus};
+use centrical_session::{CalibrationResult, Folder, Laboratory, Session, Truth, WatchState, read_plan};
 
 use crate::fuzz::{Parser, outcome};
 
@@ -62,7 +63,12 @@ fn result(file: &Path) -> String {
 }
 
 fn plateaus(file: &Path) -> String {
-    outcome(read_plateaus(file, 12))
+    let text = fs::read_to_string(&experiments()[1]).unwrap();
+    outcome(Session::parse_file(
+        &format!("plateaus = '{}'\n{text}", file.display()),
+        &experiments()[1],
+        Folder::default(),
+    ))
 }
 
 fn watch(file: &Path) -> String {

@@ -2,20 +2,21 @@
 
 use std::fs;
 
-use centrical_session::{Session, read_plateaus, read_telemetry};
+use centrical_session::Session;
 
 use crate::sample::{EXPERIMENT, Sample};
 
 #[test]
 fn what_is_no_file() {
     let sample = Sample::new(EXPERIMENT);
-    let session = Session::read(&sample.path()).unwrap();
+    let mut session = Session::read(&sample.path()).unwrap();
     let missing = session.record(1).unwrap_err();
     assert_eq!(sample.relative(&missing.to_string()), "records/m02.csv: found no such file, expected a record");
     fs::create_dir_all(sample.path().join("records/m01.csv")).unwrap();
     let folder = session.record(0).unwrap_err();
     assert_eq!(sample.relative(&folder.to_string()), "records/m01.csv: found a folder, expected a record");
-    let telemetry = read_telemetry(&sample.file("telemetry.csv", "t,rpm\n0,0\n"), &session.columns).unwrap_err();
+    session.mountings[0].telemetry = Some(sample.file("telemetry.csv", "t,rpm\n0,0\n"));
+    let telemetry = session.telemetry(0).unwrap_err();
     assert_eq!(
         sample.relative(&telemetry.to_string()),
         "telemetry.csv, line 1, omega: found columns \"t, rpm\", expected a column of this name"
@@ -61,10 +62,10 @@ fn tables_of_plateaus() {
         ),
         ("1,2,,0,,9.8,1e-8,0,0,1e-8,0,1e-8,0\n", ", line 2, mean_2: found \"\", expected a mean in m/s^2"),
     ];
-    let sample = Sample::new("");
+    let sample = Sample::new(format!("plateaus = \"plateaus.csv\"\n{EXPERIMENT}"));
     for (rows, expected) in cases {
-        let file = sample.file("plateaus.csv", format!("{HEADER}{rows}"));
-        let error = read_plateaus(&file, 2).unwrap_err();
+        sample.file("plateaus.csv", format!("{HEADER}{rows}"));
+        let error = Session::read(&sample.path()).unwrap_err();
         assert_eq!(sample.relative(&error.to_string()), format!("plateaus.csv{expected}"));
     }
 }

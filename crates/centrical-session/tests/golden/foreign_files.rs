@@ -1,6 +1,6 @@
 //! What is said of files as recorders write them, where they and the session disagree.
 
-use centrical_session::{Session, read_plateaus, read_telemetry};
+use centrical_session::Session;
 
 use crate::sample::{EXPERIMENT, Sample};
 
@@ -97,17 +97,18 @@ fn lines_above_a_table_without_names() {
 #[test]
 fn units_of_telemetry_and_plateaus() {
     let sample = Sample::new(EXPERIMENT);
-    let session = Session::read(&sample.path()).unwrap();
-    let telemetry = sample.file("telemetry.csv", "t;omega\nс;рад/с\n0;1\n");
+    let mut session = Session::read(&sample.path()).unwrap();
+    session.mountings[0].telemetry = Some(sample.file("telemetry.csv", "t;omega\nс;рад/с\n0;1\n"));
     assert_eq!(
-        sample.relative(&read_telemetry(&telemetry, &session.columns).unwrap_err().to_string()),
+        sample.relative(&session.telemetry(0).unwrap_err().to_string()),
         "telemetry.csv, line 2, omega: found the unit rad/s, expected rpm, as the session says (speed_unit in [columns])"
     );
     let plateaus = "mounting,speed,angle,mean_1,mean_2,mean_3,cov_11,cov_12,cov_13,cov_22,cov_23,cov_33,samples\n\
                     ,rad/s,rad,g,g,g,,,,,,,\n1,0,0,0,0,9.8,1e-8,0,0,1e-8,0,1e-8,100\n";
-    let plateaus = sample.file("plateaus.csv", plateaus);
+    let sample = Sample::new(format!("plateaus = \"plateaus.csv\"\n{EXPERIMENT}"));
+    sample.file("plateaus.csv", plateaus);
     assert_eq!(
-        sample.relative(&read_plateaus(&plateaus, 1).unwrap_err().to_string()),
+        sample.relative(&Session::read(&sample.path()).unwrap_err().to_string()),
         "plateaus.csv, line 2, mean_1: found the unit g, expected m/s^2, as the session says (output_unit in [unit], or a unit \
          in [columns])"
     );

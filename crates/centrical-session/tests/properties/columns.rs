@@ -2,11 +2,11 @@
 
 use std::path::Path;
 
-use centrical_session::{Column, ColumnName, Columns, Record, Scale, read_record};
+use centrical_session::{Column, ColumnName, Columns, Record, RecordReader, Scale, unwatched};
 
 fn read(name: &str, columns: &Columns) -> Record {
     let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("../centrical-table/tests/data");
-    read_record(&data.join(name), columns).unwrap()
+    RecordReader::open(&data.join(name), columns).and_then(|reader| reader.into_record(&unwatched)).unwrap()
 }
 
 #[test]

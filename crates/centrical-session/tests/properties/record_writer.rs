@@ -1,7 +1,7 @@
 use std::fs;
 
 use centrical_compensate::{Compensation, Term};
-use centrical_session::{Columns, Compensated, Record, RecordWriter, compensate_record, read_record, unwatched};
+use centrical_session::{Columns, Compensated, Record, RecordReader, RecordWriter, compensate_record, unwatched};
 use proptest::prelude::*;
 
 /// A record of `rows` rows whose numbers need all their digits.
@@ -24,7 +24,7 @@ proptest! {
             writer.write(record.as_slice()).unwrap();
             prop_assert!(!file.exists(), "not before it is whole");
             writer.finish().unwrap();
-            prop_assert!(read_record(&file, &Columns::default()).unwrap() == record, "{}", name);
+            prop_assert!(RecordReader::open(&file, &Columns::default()).and_then(|reader| reader.into_record(&unwatched)).unwrap() == record, "{}", name);
         }
     }
 
@@ -43,7 +43,7 @@ proptest! {
         let expected = Compensated { readings: rows as u64, ..Compensated::default() };
         prop_assert_eq!(compensated, expected);
         compensation.apply_all(record.f_z.each_mut().map(Vec::as_mut_slice)).unwrap();
-        prop_assert!(read_record(&output, &Columns::default()).unwrap() == record);
+        prop_assert!(RecordReader::open(&output, &Columns::default()).and_then(|reader| reader.into_record(&unwatched)).unwrap() == record);
     }
 
     /// As text: time to the bit, specific forces to the reported decimals, which are below a part in 10^12 of the range.
@@ -61,7 +61,7 @@ proptest! {
         let half = 0.5 * 10_f64.powi(-i32::try_from(compensated.decimals.unwrap()).unwrap());
         prop_assert!(half <= 1e-12 * range);
         compensation.apply_all(record.f_z.each_mut().map(Vec::as_mut_slice)).unwrap();
-        let back = read_record(&output, &Columns::default()).unwrap();
+        let back = RecordReader::open(&output, &Columns::default()).and_then(|reader| reader.into_record(&unwatched)).unwrap();
         prop_assert!(back.t == record.t);
         for (f, back) in record.f_z.iter().flatten().zip(back.f_z.iter().flatten()) {
             prop_assert!((f - back).abs() <= 1.01 * half, "{} as {}", f, back);
@@ -104,7 +104,9 @@ fn stamps_go_through_letter_by_letter() {
         let expected: Vec<String> =
             stamps.iter().map(|stamp| format!("{},0.5000000000,-0.2500000000,9.7500000000", quoted(stamp))).collect();
         assert_eq!(text.lines().skip(1).collect::<Vec<_>>(), expected);
-        let [before, after] = [&input, &output].map(|file| read_record(file, &Columns::default()).unwrap());
+        let [before, after] = [&input, &output].map(|file| {
+            RecordReader::open(file, &Columns::default()).and_then(|reader| reader.into_record(&unwatched)).unwrap()
+        });
         assert_eq!(before, after);
     }
 }

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use centrical::SetPoint;
 use centrical::reduction::{NoiseModel, ReducedMounting, ScheduledPlateau};
-use centrical_session::{RecordWriter, Session, read_record, reduce_without_inputs, unwatched};
+use centrical_session::{RecordReader, RecordWriter, Session, reduce_without_inputs, unwatched};
 use tempfile::TempDir;
 
 fn example() -> PathBuf {
@@ -20,7 +20,14 @@ fn as_parquet(folder: &Path) -> Session {
         let file = files.records.first().unwrap();
         let name = file.file_stem().unwrap().to_str().unwrap();
         let mut writer = RecordWriter::create(&folder.join(format!("records/{name}.parquet"))).unwrap();
-        writer.write(read_record(file, &session.columns).unwrap().as_slice()).unwrap();
+        writer
+            .write(
+                RecordReader::open(file, &session.columns)
+                    .and_then(|reader| reader.into_record(&unwatched))
+                    .unwrap()
+                    .as_slice(),
+            )
+            .unwrap();
         writer.finish().unwrap();
     }
     let text = fs::read_to_string(example().join("experiment.toml")).unwrap();

@@ -7,7 +7,7 @@ use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
 use centrical::Observation;
-use centrical_session::{RecordWriter, Session, Watch, read_record};
+use centrical_session::{RecordReader, RecordWriter, Session, Watch, unwatched};
 use tempfile::TempDir;
 
 /// Nobody stops the watch.
@@ -79,7 +79,9 @@ fn a_growing_text_is_taken_up_plateau_by_plateau() {
 #[test]
 fn a_parquet_record_replaced_by_rename_is_taken_up_plateau_by_plateau() {
     let (folder, session) = folder(".parquet");
-    let record = read_record(&example("records/m01.csv"), &session.columns).unwrap();
+    let record = RecordReader::open(&example("records/m01.csv"), &session.columns)
+        .and_then(|reader| reader.into_record(&unwatched))
+        .unwrap();
     let file = folder.path().join("records/m01.parquet");
     let write = |rows: usize| {
         let mut writer = RecordWriter::create(&file).unwrap();

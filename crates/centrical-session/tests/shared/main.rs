@@ -6,7 +6,7 @@ mod simulate;
 use std::path::{Path, PathBuf};
 
 use centrical_session::{
-    Axes, Column, ColumnName, Columns, Folder, Scale, Session, Tumble, TumbleRequest, read_record, tumble, unwatched,
+    Axes, Column, ColumnName, Columns, Folder, RecordReader, Scale, Session, Tumble, TumbleRequest, tumble, unwatched,
 };
 
 fn data(session: &str) -> PathBuf {
@@ -48,7 +48,9 @@ fn a_real_record_of_counts_without_a_header() {
         column(j + 2, "counts", Scale { offset: bias, factor: 1.0 / counts })
     });
     let columns = Columns { time: column(1, "s", Scale::factor(1.0)), f, ..Columns::default() };
-    let record = read_record(&data("xsens-tumble").join("xsens_acc.txt"), &columns).unwrap();
+    let record = RecordReader::open(&data("xsens-tumble").join("xsens_acc.txt"), &columns)
+        .and_then(|reader| reader.into_record(&unwatched))
+        .unwrap();
     assert_eq!(record.t.len(), 51_175);
     let mut norms: Vec<f64> =
         (0..record.t.len()).map(|i| record.f_z.iter().map(|f| f[i] * f[i]).sum::<f64>().sqrt()).collect();

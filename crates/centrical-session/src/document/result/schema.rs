@@ -23,7 +23,7 @@ pub const SCHEMA: &str = "centrical-result/1";
 /// A calibration's result.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct CalibrationResult {
-    /// [`SCHEMA`].
+    /// `centrical-result/1`.
     pub schema: String,
     /// What made it.
     pub program: Program,

@@ -11,7 +11,7 @@ use super::ledger::Ledger;
 use super::one::SeriesRequest;
 use crate::document::{FailedSession, SeriesSummary};
 use crate::error::Error;
-use crate::store::{Depth, Row, Selection, Status, Store};
+use crate::store::{Depth, Row, RowTable, Selection, Status, Store};
 
 /// Sessions whose rows are held at a time.
 const CHUNK: usize = 4096;
@@ -27,7 +27,7 @@ pub(super) fn write_tables(
         sessions.iter().filter_map(|s| Some((s.display().to_string(), ledger.key(s)?))).collect();
     let mut summary = SeriesSummary::of(keyed.len());
     let mut text = HEADER.to_owned();
-    let mut table = store.begin_table(&request.table())?;
+    let mut table = RowTable::create(&request.table())?;
     for chunk in keyed.chunks(CHUNK) {
         let keys = Some(chunk.iter().map(|(_, key)| (*key).to_owned()).collect());
         let selection = Selection { depth: Depth::Values, keys, ..Selection::default() };
