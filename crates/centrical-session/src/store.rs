@@ -12,6 +12,7 @@ mod row;
 mod schema;
 mod writing;
 
+pub(crate) use self::contradiction::{ROUNDING, of_terms};
 pub use self::folder::Store;
 pub use self::reading::{Rows, Selection};
 pub(crate) use self::row::packed;

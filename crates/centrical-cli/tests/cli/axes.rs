@@ -169,7 +169,7 @@ fn a_result_agrees_with_itself() {
     let terms = |r: &mut Value| r["model"]["error_model"].as_array_mut().unwrap().clone();
     refused(
         &|r| r["model"]["error_model"][9]["powers"] = serde_json::json!([0, 2, 0]),
-        "the monomial f2^2 of newtonometer 1",
+        "K_1[f2^2] as the term G1_11 in error_model",
     );
     refused(&|r| r["model"]["error_model"][9]["axis"] = 2.into(), "the name G1_21 or K_2[f1^2]");
     refused(&|r| r["model"]["error_model"] = terms(r)[1..].to_vec().into(), "without its term in error_model");

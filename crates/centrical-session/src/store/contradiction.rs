@@ -10,10 +10,10 @@ use super::row::{Row, Status, TermSummary};
 use super::schema::Depth;
 
 /// Column, what was found there, and what was expected.
-type Contradiction = (&'static str, String, String);
+pub(crate) type Contradiction = (&'static str, String, String);
 
 /// Relative difference of a variance from the square of a standard uncertainty that may be computed in another way: rounding makes some 1e-9 of it.
-const ROUNDING: f64 = 1e-6;
+pub(crate) const ROUNDING: f64 = 1e-6;
 
 /// The first contradiction in a row that was read so deep: lists have a number for each parameter, units are those of the groups, terms act as
 /// their names say, and variances are the squares of the standard uncertainties.
@@ -21,10 +21,14 @@ pub(super) fn contradiction(row: &Row, depth: Depth) -> Option<Contradiction> {
     if row.status == Status::Failed || depth < Depth::Values {
         return None;
     }
-    of_lists(row).or_else(|| of_numbers(row)).or_else(|| of_units(row)).or_else(|| of_terms(row)).or_else(|| {
-        let of_covariance = || of_covariance(row).or_else(|| of_changes(row));
-        if depth >= Depth::Errors { of_covariance() } else { None }
-    })
+    of_lists(row)
+        .or_else(|| of_numbers(row))
+        .or_else(|| of_units(row))
+        .or_else(|| of_terms(&row.terms, |name| row.index(name).is_some()))
+        .or_else(|| {
+            let of_covariance = || of_covariance(row).or_else(|| of_changes(row));
+            if depth >= Depth::Errors { of_covariance() } else { None }
+        })
 }
 
 /// Lists have a number for each parameter, and a parameter stands once.
@@ -94,11 +98,12 @@ fn of_units(row: &Row) -> Option<Contradiction> {
 }
 
 /// Terms act as their names say, each once, and their coefficients are parameters.
-fn of_terms(row: &Row) -> Option<Contradiction> {
+pub(crate) fn of_terms(terms: &[TermSummary], is_parameter: impl Fn(&str) -> bool) -> Option<Contradiction> {
     let mut names = HashSet::new();
-    row.terms.iter().find_map(|term| {
+    terms.iter().find_map(|term| {
         let TermSummary { name, axis, powers, sign_of } = term;
-        if !(1..=3).contains(axis) || sign_of.is_some_and(|axis| axis > 3) {
+        let is_axis = |axis: &usize| (1..=3).contains(axis);
+        if !is_axis(axis) || !sign_of.iter().all(is_axis) {
             return Some(("term_axes", format!("newtonometer {axis} of {name}"), "1 to 3".to_owned()));
         }
         let monomial = Monomial { powers: *powers, sign_of: sign_of.map(|axis| axis - 1) };
@@ -114,7 +119,7 @@ fn of_terms(row: &Row) -> Option<Contradiction> {
         if !names.insert(name) {
             return Some(("terms", format!("{name:?} twice"), "each term once".to_owned()));
         }
-        row.index(name).is_none().then(|| ("terms", format!("{name:?}"), "one of the parameters".to_owned()))
+        (!is_parameter(name)).then(|| ("terms", format!("{name:?}"), "one of the parameters".to_owned()))
     })
 }
 

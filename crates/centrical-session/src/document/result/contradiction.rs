@@ -8,9 +8,7 @@ use centrical_table::LARGEST_NUMBER;
 use super::schema::{CalibrationResult, ConvergenceSummary, Method, ObservabilitySummary, ParameterEstimate};
 use crate::experiment::RAW_OUTPUT;
 use crate::quantity::{Dimension, Quantity};
-
-/// Relative difference of a variance from the square of a standard uncertainty that may be computed in another way: rounding makes some 1e-9 of it.
-const ROUNDING: f64 = 1e-6;
+use crate::store::{ROUNDING, of_terms};
 
 /// Relative difference of uncertainties that are computed in two ways, where sums over plateaus round.
 const BUDGET_ROUNDING: f64 = 1e-3;
@@ -24,7 +22,7 @@ pub(super) fn contradiction(result: &CalibrationResult) -> Option<Contradiction>
     of_gravity(result)
         .or_else(|| of_output(result))
         .or_else(|| of_parameters(result))
-        .or_else(|| of_terms(result))
+        .or_else(|| of_error_model(result))
         .or_else(|| of_observability(&result.observability, n))
         .or_else(|| of_convergence(result.convergence.as_ref()?, n))
         .or_else(|| of_plateaus(result))
@@ -107,23 +105,13 @@ fn of_parameters(result: &CalibrationResult) -> Option<Contradiction> {
 }
 
 /// The terms of the error model act as their names say, each once, and their coefficients are the parameters of the unit, in their units.
-fn of_terms(result: &CalibrationResult) -> Option<Contradiction> {
-    let mut names = HashSet::new();
-    for term in &result.model.error_model {
-        let (1..=3, Ok(monomial)) = (term.axis, term.monomial()) else {
-            return Some((format!("the term {:?} of a newtonometer beyond the third", term.name), "1 to 3".to_owned()));
-        };
-        let known = ErrorModel::names(term.axis - 1, monomial);
-        if !known.contains(&term.name) {
-            let found = format!("the term {:?} with the monomial {monomial} of newtonometer {}", term.name, term.axis);
-            return Some((found, format!("the name {}", known.join(" or "))));
-        }
-        if !names.insert(term.name.as_str()) {
-            return Some((format!("the term {:?} twice in error_model", term.name), "each once".to_owned()));
-        }
-        let Some(parameter) = result.parameter(&term.name) else {
-            return Some((format!("no parameter {:?}, a term of error_model", term.name), "one".to_owned()));
-        };
+fn of_error_model(result: &CalibrationResult) -> Option<Contradiction> {
+    let terms = &result.model.error_model;
+    if let Some((_, found, expected)) = of_terms(terms, |name| result.parameter(name).is_some()) {
+        return Some((format!("{found} in error_model"), expected));
+    }
+    for term in terms {
+        let (parameter, monomial) = (result.parameter(&term.name)?, term.monomial().ok()?);
         let unit = Term::new(term.axis - 1, monomial).unit();
         if parameter.unit != unit {
             return Some((
@@ -132,8 +120,8 @@ fn of_terms(result: &CalibrationResult) -> Option<Contradiction> {
             ));
         }
     }
-    let is_missing = |p: &&ParameterEstimate| ErrorModel::has_name(&p.name) && !names.contains(p.name.as_str());
-    let missing = result.parameters.iter().find(is_missing)?;
+    let has_term = |p: &ParameterEstimate| terms.iter().any(|term| term.name == p.name);
+    let missing = result.parameters.iter().find(|p| ErrorModel::has_name(&p.name) && !has_term(p))?;
     Some((format!("the parameter {:?} without its term in error_model", missing.name), "one".to_owned()))
 }
 

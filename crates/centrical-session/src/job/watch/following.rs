@@ -2,21 +2,18 @@
 
 use std::collections::HashSet;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::thread;
 use std::time::{Duration, Instant};
-use std::{fs, io};
+use std::{fs, io, thread};
 
 use centrical::fit::{Follower, Progress};
 use centrical::plan::{Benefit, Criterion, NextPlateau, PlanError, ReadingRange};
 use centrical::reduction::MeasuredSpeed;
 use centrical::{FitError, Group, MeasurementModel, Observation, SetPoint, Weight};
-
 use nalgebra::Vector3;
 
 use super::arrivals::{Watch, until};
-use super::board::Board;
+use super::board::{Board, WatchProgress};
 use super::changed::Changed;
-use super::progress::WatchProgress;
 use super::request::{WatchEnd, WatchEvent, WatchRequest};
 use super::rests;
 use crate::document::{LiveStatus, WatchState, WatchedPlateau, append_history, keep_history, largest_force};

@@ -5,8 +5,7 @@ use std::time::Duration;
 
 use centrical::MeasurementModel;
 
-use super::board::LiveRequest;
-use super::progress::WatchProgress;
+use super::board::{LiveRequest, WatchProgress};
 use crate::document::CalibrationResult;
 use crate::error::Error;
 use crate::experiment::PlateauName;
