@@ -27,12 +27,7 @@ pub use self::axes::Axes;
 pub use self::calibrate::{calibrate, calibrate_reduced};
 pub use self::compare::{ComparisonRequest, compare_results};
 pub use self::compensate::{Compensated, CompensationRequest, compensate, compensate_record};
-pub use self::history::{
-    Calibrated, CalibratedParameter, ChartLimits, ChartRequest, ComparedUnits, NoHistory, ParameterLimits, Past,
-    RuleSet, UnitHistoryRequest, UnitsHistoryRequest, by_unit, chart, chart_of_one, history_up_to, read_batches,
-    read_calibrations, read_limits, station_history, unit_history, unit_history_among, unit_means, units_history,
-};
-pub use self::history::{add_result, add_results, check_store, collect_results, list_store, refuse_date, spelling};
+pub use self::history::*;
 pub use self::init::{Draft, InitRequest, init, time_column};
 pub use self::models::select_model;
 pub use self::montecarlo::{MonteCarloCase, MonteCarloRequest};

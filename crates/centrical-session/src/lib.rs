@@ -38,66 +38,14 @@ pub use centrical_table::{
     Bytes, ClaimedFolder, ColumnName, Source, TableFormat, abandon_files, claim_folder, create_folder, harmless,
     harmless_line, refuse_inputs, write_stream, write_whole,
 };
-pub use document::{
-    AddedReport, AssessedFit, AssessedParameter, AssessedPlateau, Assessment, AssessmentReport, CandidateSummary,
-    ComparedResultSummary, ComparisonReport, CompensatedUncertainty, CompensationReport, DifferenceSummary,
-    DocumentKind, DocumentsReport, Doubt, DoubtKind, DraftReport, FirstReading, HistoryLine, HistoryList,
-    ImprovementSummary, LeftOutPlateau, LineToFillIn, ModelsReport, MonteCarloReport, NestedTestSummary, ObjectionName,
-    PairComparison, ReadingsBeyond, ReducedPlateauSummary, ReductionReport, RepeatedFit, RepeatedParameter,
-    SeriesSummary, SimulationReport, SquareSummary, TermSupport, UnscheduledPlateau, WithoutOutliers, WrittenDocument,
-};
-pub use document::{
-    Agreement, GroupProgress, LiveBenefit, LiveCause, LiveLost, LivePlateau, LiveRecord, LiveReport, LiveSpeed,
-    LiveStatus, PlateauLabel, seconds_since_1970,
-};
-pub use document::{
-    AxesName, AxesParameter, AxesSummary, BetweenRestsSummary, BudgetSource, BudgetSummary, CalibrationResult,
-    ChosenRest, ChosenRests, CombinationReport, ConditionReport, ConvergenceSummary, CreepSummary, CriterionName,
-    DifferenceExtent, DisturbedPlateau, DriftSummary, FitSummary, FollowedSpeeds, Follows, FrontierRow, GoalReport,
-    GroupReport, HistoryEntry, HistoryEstimate, InnovationSummary, LeftOutSummary, LostCombination, Method,
-    ModelSummary, MountingPrediction, MountingSummary, NextAttitudeSummary, NoiseAnalysis, ObservabilityReport,
-    ObservabilitySummary, ObservedParameter, OutlyingPlateau, OutputSummary, PairReport, ParameterEstimate,
-    PatternSummary, PlanReport, PlannedMounting, PlannedPlateau, PlateauDriftVerdict, PlateauSummary, PositionSummary,
-    PredictedParameter, PredictionReport, PriorSummary, Program, ReadingNoise, ReasonReport, RemedyReport,
-    RepeatedPlateau, RestsOn, ResultObjection, RivalSize, RivalSummary, SessionDriftVerdict, SessionSummary,
-    SessionTrend, SightReport, SpeedDifference, SpeedFinding, SpeedsSummary, StepReport, Subject, TiltSummary,
-    TiltVerdict, ValiditySummary, WatchState, WatchedPlateau, read_history, unit_name,
-};
-pub use document::{
-    BatchSummary, BatchWithoutUnit, BeyondLimit, CapabilitySummary, ChartKind, ChartReport, ChartRule, ChartSignal,
-    DeviatingSession, DueDate, FailedSession, LeftOutSession, NotComparedParameter, OutlyingUnit, PastSession,
-    ReadingHistory, SamenessSummary, StationHistoryReport, StationParameter, UnitFinding, UnitFindingKind,
-    UnitHistoryReport, UnitParameter, UnitsHistoryReport, UnitsParameter, UntestedStation,
-};
-pub use error::{Error, ErrorKind, NoErrorModel, Place};
-pub use experiment::{
-    Folder, KnownAttitudes, Measured, MountingFiles, OutputUnit, Plan, PlannedRests, Planning, PlateauMean,
-    PlateauName, PlateauTable, RecordedRests, RestSource, RestTable, Session, SpeedSource, Speeds, StatedAttitudes,
-    Turning, available_time, write_plateaus,
-};
-pub use job::{
-    AssessmentRequest, Axes, ComparisonRequest, Compensated, CompensationRequest, Draft, InitRequest, LiveRequest,
-    MonteCarloCase, MonteCarloRequest, NoiseRequest, PlanRequest, Recorded, SeriesRequest, SettingsForm, Tumble,
-    TumbleRequest, USUAL_LEVELS, USUAL_TIMES, Watch, WatchEnd, WatchEvent, WatchProgress, WatchRequest, add_result,
-    add_results, assess, calibrate, calibrate_reduced, calibrate_series, check_store, collect_results, compare_results,
-    compensate, compensate_record, init, list_store, matching_paths, noise_of, noise_of_plateau, plan, read_plan,
-    read_planning, reduce, reduce_recorded, reduce_without_inputs, refuse_date, select_model, settings_schema,
-    simulate_session, spelling, subject, subject_of, time_column, tumble, watch, write_reduced,
-};
-pub use job::{
-    Calibrated, CalibratedParameter, ChartLimits, ChartRequest, ComparedUnits, NoHistory, ParameterLimits, Past,
-    RuleSet, UnitHistoryRequest, UnitsHistoryRequest, by_unit, chart, chart_of_one, history_up_to, read_batches,
-    read_calibrations, read_limits, station_history, unit_history, unit_history_among, unit_means, units_history,
-};
-pub use laboratory::{
-    Address, Certificate, Condition, Contact, Customer, Decision, DecisionRule, Environment, Item, Laboratory,
-    LaboratoryTable, Limit, LimitEnd, Limitable, Limited, MethodTable, Person, Standard, StatedLimit,
-};
-pub use quantity::{Date, Dimension, NotADay, NotThatQuantity, Quantity};
-pub use record::{Column, Columns, Input, MissingReadings, RecordOverview, RecordReader, RecordWriter, Scale, stretch};
-pub use reduced::{MountingFindings, Reduced, ReducedPlateau, Steadiness};
-pub use store::{
-    Added, Depth, Failure, Row, RowPrior, Rows, Selection, SharedInfluence, Status, Store, TermSummary, sha256,
-};
-pub use truth::Truth;
-pub use units::{MICRO_G, Symbol, Unit, UnknownUnit, customary, rpm};
+pub use document::*;
+pub use error::*;
+pub use experiment::*;
+pub use job::*;
+pub use laboratory::*;
+pub use quantity::*;
+pub use record::*;
+pub use reduced::*;
+pub use store::*;
+pub use truth::*;
+pub use units::*;

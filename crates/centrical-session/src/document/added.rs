@@ -5,7 +5,7 @@ use serde::Serialize;
 use super::result::Program;
 
 /// Name of the schema's present version.
-pub const ADDED_SCHEMA: &str = "centrical-added/1";
+pub(crate) const ADDED_SCHEMA: &str = "centrical-added/1";
 
 /// What became of results that were added to a store.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]

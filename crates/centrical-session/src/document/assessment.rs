@@ -10,7 +10,7 @@ use super::result::{BudgetSummary, Program, ResultObjection, ValiditySummary};
 use crate::experiment::PlateauName;
 
 /// Name of the schema's present version.
-pub const ASSESSMENT_SCHEMA: &str = "centrical-assessment/1";
+pub(crate) const ASSESSMENT_SCHEMA: &str = "centrical-assessment/1";
 
 /// Budget, checks and prediction of a calibration.
 #[derive(Debug, Clone, PartialEq, Serialize)]

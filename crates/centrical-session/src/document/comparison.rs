@@ -9,7 +9,7 @@ use serde::Serialize;
 use super::result::{CalibrationResult, Program};
 
 /// Name of the schema's present version.
-pub const COMPARISON_SCHEMA: &str = "centrical-comparison/1";
+pub(crate) const COMPARISON_SCHEMA: &str = "centrical-comparison/1";
 
 /// Results compared two by two.
 #[derive(Debug, Clone, PartialEq, Serialize)]

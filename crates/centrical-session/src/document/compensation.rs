@@ -6,7 +6,7 @@ use super::documents::ObjectionName;
 use super::result::Program;
 
 /// Name of the schema's present version.
-pub const COMPENSATION_SCHEMA: &str = "centrical-compensation/1";
+pub(crate) const COMPENSATION_SCHEMA: &str = "centrical-compensation/1";
 
 /// A compensated record.
 #[derive(Debug, Clone, PartialEq, Serialize)]

@@ -7,7 +7,7 @@ use serde::Serialize;
 use super::result::{CalibrationResult, Program, ResultObjection};
 
 /// Name of the schema's present version.
-pub const DOCUMENTS_SCHEMA: &str = "centrical-documents/1";
+pub(crate) const DOCUMENTS_SCHEMA: &str = "centrical-documents/1";
 
 /// The documents of a result, and its verdict.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]

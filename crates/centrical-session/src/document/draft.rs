@@ -7,7 +7,7 @@ use serde::Serialize;
 use super::result::Program;
 
 /// Name of the schema's present version.
-pub const DRAFT_SCHEMA: &str = "centrical-draft/1";
+pub(crate) const DRAFT_SCHEMA: &str = "centrical-draft/1";
 
 /// A drafted experiment file, and what a person has to complete.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]

@@ -7,7 +7,7 @@ use super::result::Program;
 use crate::store::{Row, Status};
 
 /// Name of the schema's present version.
-pub const HISTORY_LIST_SCHEMA: &str = "centrical-history-list/1";
+pub(crate) const HISTORY_LIST_SCHEMA: &str = "centrical-history-list/1";
 
 /// The calibrations of a store.
 #[derive(Debug, Clone, PartialEq, Serialize)]

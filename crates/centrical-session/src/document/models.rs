@@ -8,7 +8,7 @@ use super::json;
 use super::result::Program;
 
 /// Name of the schema's present version.
-pub const MODELS_SCHEMA: &str = "centrical-models/1";
+pub(crate) const MODELS_SCHEMA: &str = "centrical-models/1";
 
 /// The models that were fitted, and the one that the data support.
 #[derive(Debug, Clone, PartialEq, Serialize)]

@@ -8,7 +8,7 @@ use super::json;
 use super::result::Program;
 
 /// Name of the schema's present version.
-pub const MONTE_CARLO_SCHEMA: &str = "centrical-montecarlo/1";
+pub(crate) const MONTE_CARLO_SCHEMA: &str = "centrical-montecarlo/1";
 
 /// Distance of Kolmogorov's test over `1/sqrt(runs)` that chance exceeds once in twenty.
 const ONCE_IN_TWENTY: f64 = 1.36;

@@ -11,7 +11,7 @@ use super::result::Program;
 use crate::error::Error;
 
 /// Name of the schema's present version.
-pub const NOISE_SCHEMA: &str = "centrical-noise/1";
+pub(crate) const NOISE_SCHEMA: &str = "centrical-noise/1";
 
 /// The noise of a record.
 #[derive(Debug, Clone)]

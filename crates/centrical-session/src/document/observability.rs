@@ -15,7 +15,7 @@ use crate::experiment::Plan;
 use crate::units::MICRO_G;
 
 /// Name of the schema's present version.
-pub const OBSERVABILITY_SCHEMA: &str = "centrical-observability/1";
+pub(crate) const OBSERVABILITY_SCHEMA: &str = "centrical-observability/1";
 
 /// A design with its weights: a plan, or a session with those of its data.
 #[derive(Debug, Clone, PartialEq)]

@@ -7,7 +7,7 @@ use crate::document::prediction::PredictionReport;
 use crate::document::result::Program;
 
 /// Name of the schema's present version.
-pub(crate) const SCHEMA: &str = "centrical-plan/1";
+pub(crate) const PLAN_SCHEMA: &str = "centrical-plan/1";
 
 /// A plan with all that is said of it.
 #[derive(Debug, Clone, PartialEq, Serialize)]

@@ -11,7 +11,7 @@ use crate::experiment::{PlateauName, Session};
 use crate::reduced::{MountingFindings, Reduced};
 
 /// Name of the schema's present version.
-pub const REDUCTION_SCHEMA: &str = "centrical-reduction/1";
+pub(crate) const REDUCTION_SCHEMA: &str = "centrical-reduction/1";
 
 /// A session reduced to its plateau means.
 #[derive(Debug, Clone, PartialEq, Serialize)]

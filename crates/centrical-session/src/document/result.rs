@@ -14,18 +14,11 @@ mod speeds;
 mod verdict;
 
 pub(crate) use self::axes::Attitude;
-pub use self::axes_summary::{AxesName, AxesParameter, AxesSummary};
-pub use self::budget_and_checks::{
-    BetweenRestsSummary, BudgetSource, BudgetSummary, Follows, MountingPrediction, OutlyingPlateau, PatternSummary,
-    ValiditySummary,
-};
-pub use self::from_calibration::unit_name;
-pub use self::next_attitude::NextAttitudeSummary;
-pub use self::rivals::{RestsOn, RivalSize, RivalSummary};
-pub(super) use self::schema::SCHEMA;
-pub use self::schema::{
-    CalibrationResult, ConvergenceSummary, FitSummary, Method, ModelSummary, MountingSummary, ObservabilitySummary,
-    OutputSummary, ParameterEstimate, PlateauSummary, PositionSummary, PriorSummary, Program, SessionSummary,
-};
-pub use self::speeds::{DifferenceExtent, FollowedSpeeds, SpeedDifference, SpeedFinding, SpeedsSummary};
-pub use self::verdict::ResultObjection;
+pub use self::axes_summary::*;
+pub use self::budget_and_checks::*;
+pub use self::from_calibration::*;
+pub use self::next_attitude::*;
+pub use self::rivals::*;
+pub use self::schema::*;
+pub use self::speeds::*;
+pub use self::verdict::*;

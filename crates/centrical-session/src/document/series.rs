@@ -5,7 +5,7 @@ use serde::Serialize;
 use super::result::Program;
 
 /// Name of the schema's present version.
-pub const SERIES_SCHEMA: &str = "centrical-series/1";
+pub(crate) const SERIES_SCHEMA: &str = "centrical-series/1";
 
 /// How a series ended.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]

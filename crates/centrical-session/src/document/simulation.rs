@@ -8,7 +8,7 @@ use super::result::Program;
 use crate::experiment::{RestTable, Session};
 
 /// Name of the schema's present version.
-pub const SIMULATION_SCHEMA: &str = "centrical-simulation/1";
+pub(crate) const SIMULATION_SCHEMA: &str = "centrical-simulation/1";
 
 /// A session that was simulated. The truth is in its `truth.json`.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]

@@ -4,9 +4,6 @@ mod history;
 mod live;
 mod state;
 
-pub use self::history::{HistoryEntry, HistoryEstimate, InnovationSummary, append_history, keep_history, read_history};
-pub use self::live::{
-    Agreement, GroupProgress, LIVE_SCHEMA, LiveBenefit, LiveCause, LiveLost, LivePlateau, LiveRecord, LiveReport,
-    LiveSpeed, LiveStatus, PlateauLabel, seconds_since_1970,
-};
-pub use self::state::{WatchState, WatchedPlateau};
+pub use self::history::*;
+pub use self::live::*;
+pub use self::state::*;

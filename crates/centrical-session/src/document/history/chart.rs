@@ -9,7 +9,7 @@ use super::unit::PastSession;
 use crate::document::result::Program;
 
 /// Name of the schema's present version.
-pub const CHART_SCHEMA: &str = "centrical-chart/1";
+pub(crate) const CHART_SCHEMA: &str = "centrical-chart/1";
 
 /// Control charts of one parameter.
 #[derive(Debug, Clone, PartialEq, Serialize)]

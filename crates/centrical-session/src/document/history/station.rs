@@ -7,7 +7,7 @@ use crate::document::result::Program;
 use crate::quantity::Date;
 
 /// Name of the schema's present version.
-pub const STATION_HISTORY_SCHEMA: &str = "centrical-station-history/1";
+pub(crate) const STATION_HISTORY_SCHEMA: &str = "centrical-station-history/1";
 
 /// Family-wise level of what is called a change.
 pub(crate) const FAMILY: f64 = 0.05;

@@ -8,7 +8,7 @@ use crate::document::result::Program;
 use crate::quantity::Date;
 
 /// Name of the schema's present version.
-pub const UNIT_HISTORY_SCHEMA: &str = "centrical-unit-history/1";
+pub(crate) const UNIT_HISTORY_SCHEMA: &str = "centrical-unit-history/1";
 
 /// A calibration in a history.
 #[derive(Debug, Clone, PartialEq, Serialize)]

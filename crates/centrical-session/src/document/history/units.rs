@@ -8,7 +8,7 @@ use crate::document::result::Program;
 use crate::quantity::Date;
 
 /// Name of the schema's present version.
-pub const UNITS_HISTORY_SCHEMA: &str = "centrical-units-history/1";
+pub(crate) const UNITS_HISTORY_SCHEMA: &str = "centrical-units-history/1";
 
 /// Units of one type.
 #[derive(Debug, Clone, PartialEq, Serialize)]

@@ -18,7 +18,7 @@ use crate::record::{Input, RecordOverview};
 use crate::store::TermSummary;
 
 /// Name of the schema's present version.
-pub const SCHEMA: &str = "centrical-result/1";
+pub(crate) const SCHEMA: &str = "centrical-result/1";
 
 /// A calibration's result.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

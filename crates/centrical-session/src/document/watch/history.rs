@@ -91,7 +91,7 @@ impl HistoryEntry {
 ///
 /// # Errors
 /// [`Error::Json`] when a value has no place in JSON, [`Error::Table`] when the file does not take it; it is as it was then.
-pub fn append_history(file: &Path, entry: &HistoryEntry) -> Result<(), Error> {
+pub(crate) fn append_history(file: &Path, entry: &HistoryEntry) -> Result<(), Error> {
     let line = json::line("watch-history.jsonl", entry)?;
     let mut open = OpenOptions::new();
     // Only a regular file is followed, not a link or a pipe.
@@ -133,7 +133,7 @@ pub fn read_history(file: &Path) -> Result<Vec<HistoryEntry>, Error> {
 ///
 /// # Errors
 /// [`Error::Table`] when the file can be neither read nor written.
-pub fn keep_history(file: &Path, plateaus: usize) -> Result<(), Error> {
+pub(crate) fn keep_history(file: &Path, plateaus: usize) -> Result<(), Error> {
     if !file.exists() {
         return Ok(());
     }

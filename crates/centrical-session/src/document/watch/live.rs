@@ -15,7 +15,7 @@ use crate::experiment::{PlateauName, Session};
 use crate::settings::{from_json, read_result};
 
 /// Name of the form's present version.
-pub const LIVE_SCHEMA: &str = "centrical-live/1";
+pub(crate) const LIVE_SCHEMA: &str = "centrical-live/1";
 
 /// What a watch sees at this moment. Times are seconds since 1970, UTC.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
