@@ -5,12 +5,6 @@ mod entry_schemas;
 mod plan_tables;
 mod tables;
 
-pub(crate) use self::entries::{
-    AttitudeList, ColumnEntry, ColumnTable, PriorValue, RecordEntry, Steps, TermEntry, TermList, TermTable,
-};
-pub(crate) use self::plan_tables::{CandidatesTable, PlanTable};
-pub(crate) use self::tables::{
-    CentrifugeTable, ColumnsTable, Form, MeasuredTable, ModelTable, MountingTable, PlanForm, PlateauEntry,
-    PositionTable, PresetCentrifugeTable, PresetForm, PresetTable, RawTable, SiteTable, TumbleTable, TurningTable,
-    UnitTable,
-};
+pub(crate) use self::entries::*;
+pub(crate) use self::plan_tables::*;
+pub(crate) use self::tables::*;
