@@ -10,24 +10,28 @@ use super::toml_path::TomlPath;
 use crate::error::{Error, quoted};
 use crate::quantity::{Dimension, Quantity};
 
-/// The quantities beside effects, their dimensions, and what is beyond reason, where a unit was mistaken: for gravity twice its range over the
-/// Earth; 0.1 m and rad of what a machine sets, 1 rad, 10 m/s^2, 100 %.
-const QUANTITIES: [(&str, Dimension, f64); 15] = [
-    ("gravity", Dimension::Acceleration, 0.1),
-    ("latitude", Dimension::Angle, 1.0),
-    ("radius", Dimension::Length, 0.1),
-    ("radius_difference", Dimension::Length, 0.1),
-    ("speed_scale", Dimension::Ratio, 1.0),
-    ("plateau_speed", Dimension::Ratio, 1.0),
-    ("rest_angle", Dimension::Angle, 0.1),
-    ("proof_masses", Dimension::Length, 0.1),
-    ("attitude", Dimension::Angle, 1.0),
-    ("bias_change", Dimension::Acceleration, 10.0),
-    ("mounting_bias", Dimension::Acceleration, 10.0),
-    ("mounting_scale", Dimension::Ratio, 1.0),
-    ("resolution", Dimension::Acceleration, 10.0),
-    ("reading_noise", Dimension::Acceleration, 10.0),
-    ("doubt", Dimension::Ratio, 1.0),
+/// A quantity beside effects: its name, its dimension, what is beyond reason, and where it is taken.
+type Stated = (&'static str, Dimension, f64, fn(&mut TypeB, f64));
+
+/// All of them. Beyond reason a unit was mistaken: for gravity twice its range over the Earth; 0.1 m and rad of what a machine sets, 1 rad,
+/// 10 m/s^2, 100 %.
+const QUANTITIES: [Stated; 15] = [
+    ("gravity", Dimension::Acceleration, 0.1, |t, u| t.gravity = u),
+    ("latitude", Dimension::Angle, 1.0, |t, u| t.latitude = u),
+    ("radius", Dimension::Length, 0.1, |t, u| t.radius = u),
+    ("radius_difference", Dimension::Length, 0.1, |t, u| t.radius_difference = Some(u)),
+    ("speed_scale", Dimension::Ratio, 1.0, |t, u| t.speed_scale = u),
+    // That of `[centrifuge]`, which has it already.
+    ("plateau_speed", Dimension::Ratio, 1.0, |_, _| ()),
+    ("rest_angle", Dimension::Angle, 0.1, |t, u| t.rest_angle = u),
+    ("proof_masses", Dimension::Length, 0.1, |t, u| t.proof_masses = u),
+    ("attitude", Dimension::Angle, 1.0, |t, u| t.attitude = u),
+    ("bias_change", Dimension::Acceleration, 10.0, |t, u| t.bias_change = u),
+    ("mounting_bias", Dimension::Acceleration, 10.0, |t, u| t.mounting_bias = u),
+    ("mounting_scale", Dimension::Ratio, 1.0, |t, u| t.mounting_scale = u),
+    ("resolution", Dimension::Acceleration, 10.0, |t, u| t.resolution = u),
+    ("reading_noise", Dimension::Acceleration, 10.0, |t, u| t.reading_noise = u),
+    ("doubt", Dimension::Ratio, 1.0, |t, u| t.doubt = u),
 ];
 
 fn is_quantity(name: &str) -> bool {
@@ -47,49 +51,31 @@ pub(crate) fn type_b(
     speeds: &Speeds,
 ) -> Result<TypeB, Error> {
     let at = TomlPath::table(file, "uncertainty");
-    let mut stated = [None; QUANTITIES.len()];
-    for (stated, (key, dimension, largest)) in stated.iter_mut().zip(QUANTITIES) {
+    let mut type_b = TypeB { bias_change: ANY_BIAS, speed_scale: speeds.scale(), ..TypeB::default() };
+    for (key, dimension, largest, take) in QUANTITIES {
+        let Some(quantity) = table.get(key) else { continue };
         let meaning = "a standard uncertainty, zero or more and not beyond reason";
-        let read = |quantity| at.bounded(key, quantity, dimension, (0.0, largest), meaning);
-        *stated = table.get(key).map(read).transpose()?;
+        take(&mut type_b, at.bounded(key, quantity, dimension, (0.0, largest), meaning)?);
     }
-    let [gravity, latitude, radius, radius_difference, speed_scale, plateau_speed, others @ ..] = stated;
-    let [rest_angle, proof_masses, attitude, bias_change, mounting_bias, mounting_scale, others @ ..] = others;
-    let [resolution, reading_noise, doubt] = others;
-    let radius = radius.unwrap_or(0.0);
-    if let Some(difference) = radius_difference.filter(|d| *d > std::f64::consts::SQRT_2 * radius) {
+    let independent = std::f64::consts::SQRT_2 * type_b.radius;
+    if let Some(difference) = type_b.radius_difference.filter(|difference| *difference > independent) {
         let expected = "at most sqrt(2) times radius, the difference of seats measured independently";
         return Err(at.unexpected("radius_difference", format!("{difference} m"), expected));
     }
     let set_uncertainty = speeds.set_uncertainty;
-    if let Some(speed) = plateau_speed.filter(|speed| *speed != set_uncertainty) {
+    let plateau_speed =
+        table.get("plateau_speed").map(|quantity| at.finite("plateau_speed", quantity, Dimension::Ratio));
+    if let Some(speed) = plateau_speed.transpose()?.filter(|speed| *speed != set_uncertainty) {
         let expected = format!("{set_uncertainty}, the speed_uncertainty of [centrifuge], or nothing");
         return Err(at.unexpected("plateau_speed", speed.to_string(), expected));
     }
     let of_measured = speeds.measured.and_then(|measured| measured.scale);
-    if let (Some(stated), Some(scale)) = (speed_scale, of_measured)
-        && stated != scale
-    {
+    if let Some(scale) = of_measured.filter(|scale| *scale != type_b.speed_scale) {
         let expected = format!("{scale}, the scale of measured speeds in [centrifuge], or nothing");
-        return Err(at.unexpected("speed_scale", stated.to_string(), expected));
+        return Err(at.unexpected("speed_scale", type_b.speed_scale.to_string(), expected));
     }
-    Ok(TypeB {
-        gravity: gravity.unwrap_or(0.0),
-        latitude: latitude.unwrap_or(0.0),
-        radius,
-        radius_difference,
-        speed_scale: speed_scale.unwrap_or(speeds.scale()),
-        rest_angle: rest_angle.unwrap_or(0.0),
-        proof_masses: proof_masses.unwrap_or(0.0),
-        attitude: attitude.unwrap_or(0.0),
-        bias_change: bias_change.unwrap_or(ANY_BIAS),
-        mounting_bias: mounting_bias.unwrap_or(0.0),
-        mounting_scale: mounting_scale.unwrap_or(0.0),
-        resolution: resolution.unwrap_or(0.0),
-        reading_noise: reading_noise.unwrap_or(0.0),
-        doubt: doubt.unwrap_or(0.0),
-        effects: effects(&at, table, experiment, error_model)?,
-    })
+    type_b.effects = effects(&at, table, experiment, error_model)?;
+    Ok(type_b)
 }
 
 /// Bounds of effects, by the name of the rival with underscores: `arm_turn_load = "0.3 urad at 100 g"`.

@@ -1,4 +1,5 @@
 use std::fs;
+use std::path::Path;
 
 use centrical_compensate::{Compensation, Term};
 use centrical_session::{Columns, Compensated, Record, RecordReader, RecordWriter, compensate_record, unwatched};
@@ -8,6 +9,10 @@ use proptest::prelude::*;
 fn record(rows: usize, seed: f64) -> Record {
     let column = |phase: f64| (0..rows).map(|k| 100.0 * (seed + phase * k as f64).sin()).collect();
     Record { t: (0..rows).map(|k| k as f64 / 3.0).collect(), f_z: [column(1.1), column(1.2), column(1.3)] }
+}
+
+fn read(file: &Path) -> Record {
+    RecordReader::open(file, &Columns::default()).and_then(|reader| reader.into_record(&unwatched)).unwrap()
 }
 
 proptest! {
@@ -24,7 +29,7 @@ proptest! {
             writer.write(record.as_slice()).unwrap();
             prop_assert!(!file.exists(), "not before it is whole");
             writer.finish().unwrap();
-            prop_assert!(RecordReader::open(&file, &Columns::default()).and_then(|reader| reader.into_record(&unwatched)).unwrap() == record, "{}", name);
+            prop_assert!(read(&file) == record, "{}", name);
         }
     }
 
@@ -43,7 +48,7 @@ proptest! {
         let expected = Compensated { readings: rows as u64, ..Compensated::default() };
         prop_assert_eq!(compensated, expected);
         compensation.apply_all(record.f_z.each_mut().map(Vec::as_mut_slice)).unwrap();
-        prop_assert!(RecordReader::open(&output, &Columns::default()).and_then(|reader| reader.into_record(&unwatched)).unwrap() == record);
+        prop_assert!(read(&output) == record);
     }
 
     /// As text: time to the bit, specific forces to the reported decimals, which are below a part in 10^12 of the range.
@@ -61,7 +66,7 @@ proptest! {
         let half = 0.5 * 10_f64.powi(-i32::try_from(compensated.decimals.unwrap()).unwrap());
         prop_assert!(half <= 1e-12 * range);
         compensation.apply_all(record.f_z.each_mut().map(Vec::as_mut_slice)).unwrap();
-        let back = RecordReader::open(&output, &Columns::default()).and_then(|reader| reader.into_record(&unwatched)).unwrap();
+        let back = read(&output);
         prop_assert!(back.t == record.t);
         for (f, back) in record.f_z.iter().flatten().zip(back.f_z.iter().flatten()) {
             prop_assert!((f - back).abs() <= 1.01 * half, "{} as {}", f, back);
@@ -104,9 +109,7 @@ fn stamps_go_through_letter_by_letter() {
         let expected: Vec<String> =
             stamps.iter().map(|stamp| format!("{},0.5000000000,-0.2500000000,9.7500000000", quoted(stamp))).collect();
         assert_eq!(text.lines().skip(1).collect::<Vec<_>>(), expected);
-        let [before, after] = [&input, &output].map(|file| {
-            RecordReader::open(file, &Columns::default()).and_then(|reader| reader.into_record(&unwatched)).unwrap()
-        });
+        let [before, after] = [&input, &output].map(|file| read(file));
         assert_eq!(before, after);
     }
 }
