@@ -4,7 +4,7 @@ mod administrative;
 mod results;
 mod xml;
 
-use centrical_session::{CalibrationResult, Unit, UnknownUnit};
+use centrical_session::{CalibrationResult, UnitOfMeasure, UnknownUnit};
 
 use crate::document::Issuer;
 use crate::language::Language;
@@ -19,9 +19,9 @@ pub fn digital_certificate(
     issuer: &Issuer,
     language: Language,
 ) -> Result<String, UnknownUnit> {
-    let units = result.parameters.iter().map(|p| Unit::parse(&p.unit)).collect::<Result<Vec<_>, _>>()?;
+    let units = result.parameters.iter().map(|p| UnitOfMeasure::parse(&p.unit)).collect::<Result<Vec<_>, _>>()?;
     let of_axes = result.axes.iter().flat_map(|axes| &axes.parameters);
-    let of_axes = of_axes.map(|p| Unit::parse(&p.unit)).collect::<Result<Vec<_>, _>>()?;
+    let of_axes = of_axes.map(|p| UnitOfMeasure::parse(&p.unit)).collect::<Result<Vec<_>, _>>()?;
     let mut xml = Xml::new();
     let attributes = [
         ("xmlns:xsi", "http://www.w3.org/2001/XMLSchema-instance"),

@@ -6,7 +6,7 @@ use centrical::{MeasurementModel, Observation, SetPoint, TypeB};
 use nalgebra::{Matrix3, Vector3};
 
 use crate::error::Error;
-use crate::experiment::{PlateauMean as TabledPlateau, Session};
+use crate::experiment::{PlateauRow, Session};
 use crate::record::{Input, RecordOverview};
 
 /// A session's plateau means, and the files they come from.
@@ -98,9 +98,9 @@ impl From<&PlateauMean> for Steadiness {
 
 impl Reduced {
     /// The plateaus on the arm as a table, from which the session is calibrated to the same numbers.
-    pub fn table(&self, session: &Session) -> Vec<TabledPlateau> {
+    pub fn table(&self, session: &Session) -> Vec<PlateauRow> {
         let sign = session.experiment.centrifuge.rotation.sign();
-        let row = |(plateau, set_point): (&ReducedPlateau, &SetPoint)| TabledPlateau {
+        let row = |(plateau, set_point): (&ReducedPlateau, &SetPoint)| PlateauRow {
             speed: sign * set_point.omega + 0.0,
             speed_uncertainty: set_point.speed_uncertainty,
             angle: set_point.angle,
@@ -173,7 +173,7 @@ impl Reduced {
     }
 
     /// Plateaus that came already averaged.
-    pub(crate) fn of_table(rows: &[TabledPlateau]) -> Self {
+    pub(crate) fn of_table(rows: &[PlateauRow]) -> Self {
         Self {
             plateaus: rows.iter().map(ReducedPlateau::from).collect(),
             mountings: Vec::new(),
@@ -192,7 +192,7 @@ impl Reduced {
 }
 
 /// Rests in attitudes of their own as rows of a table, a mounting each.
-pub(crate) fn rest_rows(rests: &[ReducedPlateau]) -> Vec<TabledPlateau> {
+pub(crate) fn rest_rows(rests: &[ReducedPlateau]) -> Vec<PlateauRow> {
     rests.iter().enumerate().map(|(mounting, rest)| rest.row(mounting)).collect()
 }
 
@@ -203,8 +203,8 @@ impl ReducedPlateau {
     }
 
     /// The mean as a row of a table, at rest.
-    fn row(&self, mounting: usize) -> TabledPlateau {
-        TabledPlateau {
+    fn row(&self, mounting: usize) -> PlateauRow {
+        PlateauRow {
             mounting,
             speed: 0.0,
             speed_uncertainty: None,
@@ -240,8 +240,8 @@ fn amplitude([cosine, sine]: &[Vector3<f64>; 2]) -> Option<Vector3<f64>> {
     Some(cosine.zip_map(sine, f64::hypot)).filter(|amplitude| *amplitude != Vector3::zeros())
 }
 
-impl From<&TabledPlateau> for ReducedPlateau {
-    fn from(row: &TabledPlateau) -> Self {
+impl From<&PlateauRow> for ReducedPlateau {
+    fn from(row: &PlateauRow) -> Self {
         Self {
             window: None,
             samples: row.samples,

@@ -140,7 +140,7 @@ const fn symbol(
     Symbol { plain, english, russian, d_si }
 }
 
-/// The parts of units; those of SI first, in the order of the powers of [`Unit`].
+/// The parts of units; those of SI first, in the order of the powers of [`UnitOfMeasure`].
 const SYMBOLS: [Symbol; 15] = [
     symbol("m", "m", "м", Some("\\metre")),
     symbol("s", "s", "с", Some("\\second")),
@@ -168,7 +168,7 @@ impl Symbol {
 
 /// An SI unit: powers of metre, second and radian.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Unit([i32; 3]);
+pub struct UnitOfMeasure([i32; 3]);
 
 /// A text that names no unit of a parameter.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -178,7 +178,7 @@ pub struct UnknownUnit {
     pub found: String,
 }
 
-impl Unit {
+impl UnitOfMeasure {
     /// `m/s^2`.
     pub const ACCELERATION: Self = Self([1, -2, 0]);
 
@@ -225,19 +225,19 @@ mod tests {
 
     #[test]
     fn units_of_results() {
-        let shown = |text| Unit::parse(text).unwrap().d_si();
+        let shown = |text| UnitOfMeasure::parse(text).unwrap().d_si();
         assert_eq!(shown("m/s^2"), "\\metre\\second\\tothe{-2}");
         assert_eq!(shown("s^2/m"), "\\metre\\tothe{-1}\\second\\tothe{2}");
         assert_eq!(shown("s^4/m^2"), "\\metre\\tothe{-2}\\second\\tothe{4}");
         assert_eq!((shown("1").as_str(), shown("rad").as_str()), ("\\one", "\\radian"));
-        let product = Unit::parse("m/s^2").unwrap().times(Unit::parse("s^2/m").unwrap());
+        let product = UnitOfMeasure::parse("m/s^2").unwrap().times(UnitOfMeasure::parse("s^2/m").unwrap());
         assert_eq!(product.d_si(), "\\one");
     }
 
     #[test]
     fn what_is_no_unit_is_refused() {
         for text in ["", "kg", "m/K", "m^x", "ug/g^2"] {
-            assert_eq!(Unit::parse(text), Err(UnknownUnit { found: text.to_owned() }));
+            assert_eq!(UnitOfMeasure::parse(text), Err(UnknownUnit { found: text.to_owned() }));
         }
     }
 

@@ -31,7 +31,7 @@ pub use between::{Between, Likely};
 pub use capability::{Capability, Index};
 pub use chart::{Control, Cusum, Ewma, Rule};
 pub use evolution::{DAYS_IN_YEAR, Estimated, Evolution};
-pub use law::Law;
+pub use law::NormalMixture;
 pub use line::Curve;
 pub use outlying::{UnitDistance, UnitSessions};
 pub use quantiles::Quantiles;

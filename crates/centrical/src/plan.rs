@@ -43,6 +43,6 @@ pub use goals::{Reached, Task};
 pub use next::{Benefit, NextPlateau};
 pub use normalised::Normalised;
 pub use prediction::Prediction;
-pub use rationale::{Rationale, Reason};
+pub use rationale::{Rationale, VisitReason};
 pub use relaxation::Relaxed;
 pub use search::{Effort, Plan};

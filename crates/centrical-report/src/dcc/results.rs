@@ -2,7 +2,7 @@
 //! errors.
 
 use centrical_session::{
-    CalibrationResult, Condition, Laboratory, OutputSummary, OutputUnit, ParameterEstimate, Symbol, Unit,
+    CalibrationResult, Condition, Laboratory, OutputSummary, OutputUnit, ParameterEstimate, Symbol, UnitOfMeasure,
 };
 use nalgebra::Vector3;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
@@ -20,7 +20,7 @@ use crate::number::converted;
 pub(super) fn list(
     xml: &mut Xml,
     result: &CalibrationResult,
-    [units, of_axes]: [&[Unit]; 2],
+    [units, of_axes]: [&[UnitOfMeasure]; 2],
     laboratory: &Laboratory,
     language: Language,
 ) {
@@ -106,7 +106,7 @@ fn influences(xml: &mut Xml, result: &CalibrationResult, laboratory: &Laboratory
         }
         let speed = result.model.has_arm().then_some(result.model.speed_uncertainty);
         let numbers = [
-            ("centrical_gravity", messages.gravity, Some(result.model.gravity), &*Unit::ACCELERATION.d_si()),
+            ("centrical_gravity", messages.gravity, Some(result.model.gravity), &*UnitOfMeasure::ACCELERATION.d_si()),
             ("centrical_speedUncertainty", messages.speed_uncertainty, speed, "\\one"),
         ];
         for (kind, name, value, unit) in numbers {
@@ -154,7 +154,7 @@ fn real_list(xml: &mut Xml, values: &[String], unit: &str) {
     });
 }
 
-fn parameters(xml: &mut Xml, result: &CalibrationResult, units: &[Unit], language: Language) {
+fn parameters(xml: &mut Xml, result: &CalibrationResult, units: &[UnitOfMeasure], language: Language) {
     let messages = language.messages();
     xml.kind("dcc:result", "centrical_parameters", |xml| {
         xml.content("dcc:name", messages.parameters, language);
@@ -216,7 +216,7 @@ fn nominal(xml: &mut Xml, result: &CalibrationResult, language: Language) {
 fn one_parameter(
     xml: &mut Xml,
     result: &CalibrationResult,
-    (parameter, unit): (&ParameterEstimate, Unit),
+    (parameter, unit): (&ParameterEstimate, UnitOfMeasure),
     language: Language,
 ) {
     let messages = language.messages();
@@ -230,7 +230,7 @@ fn one_parameter(
 }
 
 /// The estimable parameters as one vector with its covariance matrix.
-fn covariance(xml: &mut Xml, result: &CalibrationResult, units: &[Unit], language: Language) {
+fn covariance(xml: &mut Xml, result: &CalibrationResult, units: &[UnitOfMeasure], language: Language) {
     let all = &result.parameters;
     let shown: Vec<usize> = (0..all.len()).filter(|&j| all[j].estimable).collect();
     if shown.is_empty() {
@@ -249,7 +249,7 @@ fn covariance(xml: &mut Xml, result: &CalibrationResult, units: &[Unit], languag
 }
 
 /// The error model in other axes, as one vector with its covariance matrix.
-fn other_axes(xml: &mut Xml, result: &CalibrationResult, units: &[Unit], language: Language) {
+fn other_axes(xml: &mut Xml, result: &CalibrationResult, units: &[UnitOfMeasure], language: Language) {
     let messages = language.messages();
     let Some(axes) = &result.axes else { return };
     let quantities = axes.parameters.iter().zip(units).map(|(p, unit)| (p.name.as_str(), p.value, *unit));
@@ -270,7 +270,7 @@ fn other_axes(xml: &mut Xml, result: &CalibrationResult, units: &[Unit], languag
 }
 
 /// Quantities, each a label, a value and a unit, as one vector with its covariance matrix.
-fn vector(xml: &mut Xml, quantities: &[(&str, f64, Unit)], covariance: &dyn Fn(usize, usize) -> f64) {
+fn vector(xml: &mut Xml, quantities: &[(&str, f64, UnitOfMeasure)], covariance: &dyn Fn(usize, usize) -> f64) {
     let all = 0..quantities.len();
     let joined = |text: &dyn Fn(usize) -> String| all.clone().map(text).collect::<Vec<_>>().join(" ");
     xml.element("si:realListXMLList", |xml| {
@@ -324,7 +324,7 @@ fn errors(xml: &mut Xml, result: &CalibrationResult, language: Language) {
                         xml.kind("dcc:quantity", kind, |xml| {
                             xml.content("dcc:name", name, language);
                             let values: Vec<String> = errors.iter().map(|error| number(of(error)[axis])).collect();
-                            real_list(xml, &values, &Unit::ACCELERATION.d_si());
+                            real_list(xml, &values, &UnitOfMeasure::ACCELERATION.d_si());
                         });
                     };
                     column("basic_referenceValue centrical_specificForce", messages.specific_force, |e| e.force);

@@ -1,7 +1,7 @@
 //! The units in which noise, and the criterion of a plan, are shown.
 
 use centrical::stability::{Estimator, NoiseTerm};
-use centrical_session::{CriterionName, MICRO_G, PlanReport, ReadingNoise, Unit};
+use centrical_session::{CriterionName, MICRO_G, PlanReport, ReadingNoise, UnitOfMeasure};
 
 /// How the numbers of one column are shown.
 pub(crate) struct Shown {
@@ -48,7 +48,7 @@ impl Shown {
 }
 
 fn is_acceleration(reading: &ReadingNoise) -> bool {
-    Unit::parse(&reading.unit) == Ok(Unit::ACCELERATION)
+    UnitOfMeasure::parse(&reading.unit) == Ok(UnitOfMeasure::ACCELERATION)
 }
 
 /// Size of the unit [unit of the criterion], and its name; none of a number without a unit.

@@ -4,13 +4,13 @@ use std::path::Path;
 
 use centrical::STANDARD_GRAVITY;
 use centrical_compensate::Certificate;
-use centrical_session::Compensated;
+use centrical_session::CompensatedRecord;
 
 use super::screen::{Emphasis, Screen};
 use crate::number::counted;
 
 /// What became of a record, where the inverse is unique, and where the specific forces are.
-pub fn compensation_text(compensated: &Compensated, certificate: &Certificate, out: &Path) -> Screen {
+pub fn compensation_text(compensated: &CompensatedRecord, certificate: &Certificate, out: &Path) -> Screen {
     let g = |f: f64| format!("{:.6} g", f / STANDARD_GRAVITY);
     let Certificate { range, margin, .. } = *certificate;
     let farthest = if margin.is_finite() {

@@ -1,6 +1,6 @@
 //! The choice of the error model as text for the terminal.
 
-use centrical::uncertainty::{FittedCandidate, Level, Selection, chance_of_residuals};
+use centrical::uncertainty::{FittedCandidate, Level, ModelSelection, chance_of_residuals};
 
 use super::phrases::changes_for;
 use super::screen::{Emphasis, Screen};
@@ -20,7 +20,7 @@ const ALIKE: f64 = 2.0;
 const STATED: &str = "as stated";
 
 /// The recommendation and its reason, the candidates with the lowest BIC in one table, the terms one by one.
-pub fn selection_table(selection: &Selection) -> Screen {
+pub fn selection_table(selection: &ModelSelection) -> Screen {
     let mut screen = Screen::default();
     recommendation(&mut screen, selection);
     screen.gap();
@@ -43,7 +43,7 @@ pub fn selection_table(selection: &Selection) -> Screen {
 }
 
 /// Which candidate, what that means, and why.
-fn recommendation(screen: &mut Screen, selection: &Selection) {
+fn recommendation(screen: &mut Screen, selection: &ModelSelection) {
     let best = &selection.candidates[selection.recommended];
     let meaning = if best.rivals.is_empty() {
         format!("\"{}\": the data support no addition to it", best.name)
@@ -66,7 +66,7 @@ fn recommendation(screen: &mut Screen, selection: &Selection) {
 }
 
 /// Other additions with as many unknowns and about as low a BIC.
-fn alike(selection: &Selection, best: &FittedCandidate) -> Vec<String> {
+fn alike(selection: &ModelSelection, best: &FittedCandidate) -> Vec<String> {
     let is_alike = |other: &&FittedCandidate| {
         other.name != best.name && other.rank == best.rank && other.converged && other.bic - best.bic < ALIKE
     };
@@ -74,7 +74,7 @@ fn alike(selection: &Selection, best: &FittedCandidate) -> Vec<String> {
 }
 
 /// The candidates, the recommended one first, then by their BIC.
-fn candidates(screen: &mut Screen, selection: &Selection) {
+fn candidates(screen: &mut Screen, selection: &ModelSelection) {
     let mut order: Vec<usize> = (0..selection.candidates.len()).collect();
     order.sort_by(|&a, &b| selection.candidates[a].bic.total_cmp(&selection.candidates[b].bic));
     order.sort_by_key(|n| *n != selection.recommended);
@@ -135,7 +135,7 @@ fn wide(value: f64) -> String {
 }
 
 /// Why the recommended one.
-fn reasons(selection: &Selection) -> Vec<String> {
+fn reasons(selection: &ModelSelection) -> Vec<String> {
     let best = &selection.candidates[selection.recommended];
     let mut reasons = vec!["it has the lowest BIC".to_owned()];
     let others = selection.candidates.iter().enumerate().filter(|(n, _)| *n != selection.recommended).map(|(_, r)| r);

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use centrical::Group;
-use centrical::uncertainty::Difference;
+use centrical::uncertainty::ParameterDifference;
 use serde::Serialize;
 
 use super::result::{CalibrationResult, Program};
@@ -134,7 +134,7 @@ impl ComparisonReport {
 impl DifferenceSummary {
     /// A difference of a coefficient with this `unit` and `group`, its values in both results, and the years between them.
     pub(crate) fn of(
-        found: &Difference,
+        found: &ParameterDifference,
         (unit, group): (&str, Group),
         [first, second]: [Option<f64>; 2],
         years: Option<f64>,

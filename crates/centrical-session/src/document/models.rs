@@ -1,7 +1,7 @@
 //! Rival models compared, as a document: schema `centrical-models/1`.
 
 use centrical::Rival;
-use centrical::uncertainty::{FittedCandidate, Selection};
+use centrical::uncertainty::{FittedCandidate, ModelSelection};
 use serde::Serialize;
 
 use super::json;
@@ -78,7 +78,7 @@ pub struct TermSupport {
 
 impl ModelsReport {
     /// The comparison of models for a session of that title.
-    pub fn of(selection: &Selection, title: &str) -> Self {
+    pub fn of(selection: &ModelSelection, title: &str) -> Self {
         let term = |t: &centrical::uncertainty::TermVerdict| TermSupport {
             name: t.name.clone(),
             significance: t.significance,

@@ -1,6 +1,6 @@
 //! The calibration repeated on drawn readings, as a document: schema `centrical-montecarlo/1`.
 
-use centrical::uncertainty::{Method, MonteCarlo, ParameterStatistics, Settings, WeightedSquare};
+use centrical::uncertainty::{FitMethod, MonteCarlo, ParameterStatistics, Settings, WeightedSquare};
 use centrical::{Group, Parameters};
 use serde::Serialize;
 
@@ -48,11 +48,11 @@ pub enum RepeatedFit {
     Linear,
 }
 
-impl From<Method> for RepeatedFit {
-    fn from(method: Method) -> Self {
+impl From<FitMethod> for RepeatedFit {
+    fn from(method: FitMethod) -> Self {
         match method {
-            Method::Exact => Self::Exact,
-            Method::Linear => Self::Linear,
+            FitMethod::Exact => Self::Exact,
+            FitMethod::Linear => Self::Linear,
         }
     }
 }

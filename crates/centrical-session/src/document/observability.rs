@@ -11,7 +11,7 @@ use serde_json::{Map, Value};
 use crate::document::prediction::PredictionReport;
 use crate::document::result::{PriorSummary, Program};
 use crate::error::{Error, Place};
-use crate::experiment::Plan;
+use crate::experiment::PlannedSession;
 use crate::units::MICRO_G;
 
 /// Name of the schema's present version.
@@ -59,8 +59,8 @@ pub(crate) fn largest_force(experiment: &Experiment) -> f64 {
     experiment.set_points.iter().map(|s| experiment.nominal(s).norm()).fold(0.0, f64::max)
 }
 
-impl From<Plan> for Subject {
-    fn from(plan: Plan) -> Self {
+impl From<PlannedSession> for Subject {
+    fn from(plan: PlannedSession) -> Self {
         let density = plan.noise.density / MICRO_G;
         Self {
             file: plan.file,

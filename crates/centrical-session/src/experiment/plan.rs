@@ -29,7 +29,7 @@ const LONGEST_LIST: usize = 100;
 
 /// A planned experiment.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Plan {
+pub struct PlannedSession {
     /// The plan file.
     pub file: PathBuf,
     /// Title, as in a session.
@@ -89,7 +89,7 @@ impl Probe {
     }
 }
 
-impl Plan {
+impl PlannedSession {
     /// Reads a plan; `None` if the file is a session with records or plateaus of its own, or a folder.
     ///
     /// # Errors

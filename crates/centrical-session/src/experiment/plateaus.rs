@@ -26,7 +26,7 @@ use crate::record::{CheckedTable, StatedUnits, TableForm};
 
 /// The mean readings of one plateau.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct PlateauMean {
+pub struct PlateauRow {
     /// Index of its mounting, from 0.
     pub mounting: usize,
     /// Speed [rad/s], positive in the default sense of rotation; 0 at rest.
@@ -51,10 +51,10 @@ pub struct PlateauTable {
     /// The file; `None` for a table in memory.
     pub file: Option<PathBuf>,
     /// One row for each of the experiment's set points, in the same order.
-    pub rows: Vec<PlateauMean>,
+    pub rows: Vec<PlateauRow>,
 }
 
-impl PlateauMean {
+impl PlateauRow {
     /// The mean as data of a fit, of that set point.
     pub(crate) fn observation(&self, set_point: usize) -> Observation {
         Observation { set_point, mean: self.mean, covariance: self.covariance }
@@ -157,7 +157,7 @@ impl PlateauTable {
     }
 
     pub(crate) fn set_points(&self, rotation: Rotation) -> Vec<SetPoint> {
-        let set_point = |p: &PlateauMean| SetPoint {
+        let set_point = |p: &PlateauRow| SetPoint {
             mounting: p.mounting,
             omega: rotation.sign() * p.speed + 0.0,
             angle: p.angle,
@@ -207,8 +207,8 @@ pub(super) enum Further {
 
 impl Further {
     /// What these plateaus have.
-    pub fn of(plateaus: &[PlateauMean]) -> Self {
-        let has = |what: fn(&PlateauMean) -> bool| plateaus.iter().any(what);
+    pub fn of(plateaus: &[PlateauRow]) -> Self {
+        let has = |what: fn(&PlateauRow) -> bool| plateaus.iter().any(what);
         match () {
             () if has(|p| p.speed_uncertainty.is_some()) => Self::Speeds,
             () if has(|p| p.bend_z.is_some()) => Self::Bends,
@@ -264,7 +264,7 @@ pub(super) const PLATEAUS: &str = "a table of plateaus";
 /// # Errors
 /// If the file can not be read or lacks a column; if a row names no mounting, rests without an angle, or has a
 /// covariance that is not positive definite.
-pub(super) fn plateaus_of(source: &Source, mountings: usize, further: Further) -> Result<Vec<PlateauMean>, Error> {
+pub(super) fn plateaus_of(source: &Source, mountings: usize, further: Further) -> Result<Vec<PlateauRow>, Error> {
     let columns: Vec<_> = COLUMNS.iter().chain(further.columns()).collect();
     let field = |(k, (name, expected)): (usize, &&(&str, &str))| Field {
         name: ColumnName::Name((*name).to_owned()),
@@ -293,15 +293,15 @@ fn row_of(columns: &[Vec<f64>], row: usize) -> Row {
     (std::array::from_fn(at), std::array::from_fn(|k| at(COLUMNS.len() + k)))
 }
 
-fn checked(file: &Path, rows: &[Row], mountings: usize, further: Further) -> Result<Vec<PlateauMean>, Error> {
+fn checked(file: &Path, rows: &[Row], mountings: usize, further: Further) -> Result<Vec<PlateauRow>, Error> {
     let checked = |(number, (row, numbers)): (u64, &Row)| {
         let plateau = plateau(file, number, row, mountings)?;
         Ok(match further {
             Further::Nothing => plateau,
             Further::Speeds => {
-                PlateauMean { speed_uncertainty: speed_uncertainty(file, number, numbers[0])?, ..plateau }
+                PlateauRow { speed_uncertainty: speed_uncertainty(file, number, numbers[0])?, ..plateau }
             }
-            Further::Bends => PlateauMean { bend_z: Some(bend(file, number, numbers)?), ..plateau },
+            Further::Bends => PlateauRow { bend_z: Some(bend(file, number, numbers)?), ..plateau },
         })
     };
     let plateaus = (1..).zip(rows).map(checked).collect::<Result<Vec<_>, Error>>()?;
@@ -353,7 +353,7 @@ fn bend(file: &Path, number: u64, bend_z: &[f64; 3]) -> Result<Vector3<f64>, Err
 }
 
 /// One row, checked.
-fn plateau(file: &Path, number: u64, row: &[f64; COLUMNS.len()], mountings: usize) -> Result<PlateauMean, Error> {
+fn plateau(file: &Path, number: u64, row: &[f64; COLUMNS.len()], mountings: usize) -> Result<PlateauRow, Error> {
     let wrong = |k: usize, expected: String| {
         let found = if row[k].is_nan() { "an empty field".to_owned() } else { row[k].to_string() };
         Error::content(file, Place::Row { row: number, column: COLUMNS[k].0.to_owned() }, found, expected)
@@ -384,7 +384,7 @@ fn plateau(file: &Path, number: u64, row: &[f64; COLUMNS.len()], mountings: usiz
     )]
     let (mounting, samples) = (mounting as usize - 1, samples as u64);
     let angle = if speed == 0.0 { angle } else { 0.0 };
-    Ok(PlateauMean {
+    Ok(PlateauRow {
         mounting,
         speed,
         speed_uncertainty: None,

@@ -13,7 +13,7 @@ use nalgebra::Vector3;
 
 use super::folder::Folder;
 use super::form::{AttitudeList, RecordEntry, TumbleTable};
-use super::plateaus::{Further, PLATEAUS, PlateauMean, plateaus_of};
+use super::plateaus::{Further, PLATEAUS, PlateauRow, plateaus_of};
 use super::rest_entry::{known, refuse_duration, stated, switch_on, uncertainty};
 use super::schedule;
 use super::stated_attitudes::{ATTITUDES, CUBE, StatedAttitudes, as_independent, directions, read_attitudes};
@@ -28,7 +28,7 @@ pub struct RestTable {
     /// Where they come from.
     pub source: RestSource,
     /// Their means, each of a mounting of its own; none of rests that are planned, or still to be found in a record.
-    pub means: Vec<PlateauMean>,
+    pub means: Vec<PlateauRow>,
     /// What is known of their attitudes; `None` where only gravity shows them.
     pub attitudes: Option<KnownAttitudes>,
     /// When the unit was on.
@@ -364,7 +364,7 @@ pub(crate) fn refuse_records(file: &Path, tables: &[RestTable]) -> Result<(), Er
 const FARTHEST: f64 = PI / 6.0;
 
 /// The rests of a table: each row is one, and none has a speed.
-fn read_rests(table: &Source, further: Further) -> Result<Vec<PlateauMean>, Error> {
+fn read_rests(table: &Source, further: Further) -> Result<Vec<PlateauRow>, Error> {
     let rests = plateaus_of(table, usize::MAX, further)?;
     match (1..).zip(&rests).find(|(_, rest)| rest.speed != 0.0) {
         Some((row, rest)) => {

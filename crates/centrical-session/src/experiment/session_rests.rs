@@ -3,7 +3,7 @@
 use centrical::{Centrifuge, Experiment, PairRelation};
 
 use super::form::{TermEntry, TermList};
-use super::plateaus::PlateauMean;
+use super::plateaus::PlateauRow;
 use super::prior::PriorEntry;
 use super::rests::{self, RecordedRests, RestTable};
 use super::session::Session;
@@ -47,7 +47,7 @@ impl Session {
     }
 
     /// The means of the rests in free attitudes.
-    pub fn rests(&self) -> impl Iterator<Item = &PlateauMean> {
+    pub fn rests(&self) -> impl Iterator<Item = &PlateauRow> {
         self.rest_tables.iter().flat_map(|table| &table.means)
     }
 

@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 use std::path::Path;
 
-use centrical::uncertainty::{Comparison, Difference, Estimates};
+use centrical::uncertainty::{Comparison, Estimates, ParameterDifference};
 use nalgebra::{DMatrix, DVector};
 
 use super::history::{Calibrated, CalibratedParameter, Kinds, refuse_other_output, shared_changes};
@@ -71,7 +71,7 @@ fn pair_of(
     let same_unit = first.session.unit() == second.session.unit();
     let years = years.or_else(|| years_between(first, second)).filter(|years| *years != 0.0);
     let comparison = differences(&[&a, &b], &names);
-    let summary = |difference: &Difference| {
+    let summary = |difference: &ParameterDifference| {
         let [in_a, in_b] = [a.place(&difference.name)?, b.place(&difference.name)?];
         let CalibratedParameter { unit, group, .. } = &b.parameters[in_b];
         Some(DifferenceSummary::of(difference, (unit, *group), [Some(a.values[in_a]), Some(b.values[in_b])], years))

@@ -20,7 +20,7 @@ use crate::record::{Columns, RecordReader, stretch};
 
 /// What became of a record.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Compensated {
+pub struct CompensatedRecord {
     /// Readings.
     pub readings: u64,
     /// Of these, readings that no specific force within the range gives; they are written as NaN.
@@ -72,7 +72,7 @@ impl Calibrated {
 pub fn compensate(
     request: &CompensationRequest,
     progress: OnProgress,
-) -> Result<(Compensated, Certificate, Vec<ResultObjection>), Error> {
+) -> Result<(CompensatedRecord, Certificate, Vec<ResultObjection>), Error> {
     let result = CalibrationResult::read(&request.result)?;
     let result = match &request.axes {
         Some(axes) => axes.of(result, &request.result)?,
@@ -145,7 +145,7 @@ pub fn compensate_record(
     columns: &Columns,
     output: &Path,
     progress: OnProgress,
-) -> Result<Compensated, Error> {
+) -> Result<CompensatedRecord, Error> {
     rayon::scope(|_| on_this_thread(compensation, &Calibrated::ANYWHERE, input, columns, output, progress))
 }
 
@@ -156,11 +156,11 @@ fn on_this_thread(
     columns: &Columns,
     output: &Path,
     progress: OnProgress,
-) -> Result<Compensated, Error> {
+) -> Result<CompensatedRecord, Error> {
     let mut record = RecordReader::open(input, columns)?;
     record.keep_stamps();
     let mut writer = RecordWriter::create_rounded(output, compensation.certificate().range)?;
-    let mut sum = Compensated { decimals: writer.decimals(), ..Compensated::default() };
+    let mut sum = CompensatedRecord { decimals: writer.decimals(), ..CompensatedRecord::default() };
     while let Some(batch) = record.next_batch()? {
         let compensated = batch.par_iter_mut().map(|rows| compensate_rows(compensation, calibrated, input, rows));
         for rows in compensated.collect::<Vec<_>>() {
@@ -190,8 +190,8 @@ fn compensate_rows(
     calibrated: &Calibrated,
     input: &Path,
     rows: &mut Rows,
-) -> Result<Compensated, Error> {
-    let [t, f @ ..] = rows.as_mut_slice() else { return Ok(Compensated::default()) };
+) -> Result<CompensatedRecord, Error> {
+    let [t, f @ ..] = rows.as_mut_slice() else { return Ok(CompensatedRecord::default()) };
     let readings = f.to_vec();
     let mut columns = f.iter_mut();
     let f = [(); 3].map(|()| columns.next().map_or_else(Default::default, Vec::as_mut_slice));
@@ -202,10 +202,10 @@ fn compensate_rows(
     let first = |k: usize| FirstReading { t: t[k], reading: [0, 1, 2].map(|axis: usize| readings[axis][k]) };
     let [outside, beyond] =
         [outside, beyond].map(|found| ReadingsBeyond { count: found.count as u64, first: found.first.map(first) });
-    Ok(Compensated { readings: t.len() as u64, outside, beyond, decimals: None })
+    Ok(CompensatedRecord { readings: t.len() as u64, outside, beyond, decimals: None })
 }
 
-impl Compensated {
+impl CompensatedRecord {
     /// What became of the record of `request`, as a document.
     pub fn report(
         &self,

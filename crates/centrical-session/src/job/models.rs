@@ -1,7 +1,7 @@
 //! Which error model the data of a session speak for.
 
 use centrical::OnProgress;
-use centrical::uncertainty::Selection;
+use centrical::uncertainty::ModelSelection;
 
 use super::calibrate::Problem;
 use crate::error::Error;
@@ -12,8 +12,8 @@ use crate::experiment::Session;
 ///
 /// # Errors
 /// [`Error`] naming the file, the place, what was found and what was expected.
-pub fn select_model(session: &Session, progress: OnProgress) -> Result<Selection, Error> {
+pub fn select_model(session: &Session, progress: OnProgress) -> Result<ModelSelection, Error> {
     let Problem { model, reduced, .. } = Problem::of(session, progress)?;
-    Selection::beside(&model, &reduced.observations(), &|_| progress(0))
+    ModelSelection::beside(&model, &reduced.observations(), &|_| progress(0))
         .map_err(|source| Error::fit(&session.file, source))
 }

@@ -3,14 +3,14 @@
 use std::path::{Path, PathBuf};
 
 use centrical::plan::Prediction;
-use centrical::uncertainty::{Method, MonteCarlo, Settings};
+use centrical::uncertainty::{FitMethod, MonteCarlo, Settings};
 use centrical::{Calibration, Data, FitError, MeasurementModel, Observation, OnProgress, STANDARD_GRAVITY, Weight};
 use nalgebra::Vector3;
 
 use super::calibrate::Problem;
 use crate::document::MonteCarloReport;
 use crate::error::{Error, Place};
-use crate::experiment::{Plan, Session};
+use crate::experiment::{PlannedSession, Session};
 
 /// How often what is repeated.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -36,7 +36,7 @@ impl MonteCarloRequest {
     }
 
     fn settings(&self) -> Settings {
-        let method = if self.linear { Method::Linear } else { Method::Exact };
+        let method = if self.linear { FitMethod::Linear } else { FitMethod::Exact };
         Settings { runs: self.runs, seed: self.seed, coverage: self.coverage, method }
     }
 }
@@ -71,8 +71,8 @@ impl MonteCarloCase {
     ///
     /// # Errors
     /// [`Error::Fit`] when a weight is invalid.
-    pub fn planned(plan: Plan, noise: Option<f64>) -> Result<Self, Error> {
-        let Plan { file, model, nominal, weights, .. } = plan;
+    pub fn planned(plan: PlannedSession, noise: Option<f64>) -> Result<Self, Error> {
+        let PlannedSession { file, model, nominal, weights, .. } = plan;
         let truth = Prediction::unit_of(&model, &weights, &nominal).map_err(|source| Error::fit(&file, source))?;
         let equal = |noise: f64| Weight::equal(weights.len(), noise * 1e-6 * STANDARD_GRAVITY);
         let weights = noise.map_or_else(|| weights.clone(), equal);

@@ -12,7 +12,7 @@ use self::report::report;
 pub use self::report::{PlanRequest, USUAL_LEVELS, USUAL_TIMES};
 use crate::document::{CalibrationResult, PlanReport};
 use crate::error::Error;
-use crate::experiment::{ExpectedValues, Plan, Planning};
+use crate::experiment::{ExpectedValues, PlannedSession, Planning};
 
 /// Plans as a plan file asks, and reports the plan. `progress` is called again and again; it changes nothing but whether the search
 /// goes on.
@@ -27,12 +27,12 @@ pub fn plan(file: &Path, request: &PlanRequest, progress: OnProgress<()>) -> Res
     report(&planning, &plan, request, progress)
 }
 
-/// Reads a plan and the earlier result that it names; `None` for a session, as [`Plan::read`].
+/// Reads a plan and the earlier result that it names; `None` for a session, as [`PlannedSession::read`].
 ///
 /// # Errors
-/// As [`Plan::read`] and [`CalibrationResult::read`].
-pub fn read_plan(path: &Path) -> Result<Option<Plan>, Error> {
-    let mut plan = Plan::read(path)?;
+/// As [`PlannedSession::read`] and [`CalibrationResult::read`].
+pub fn read_plan(path: &Path) -> Result<Option<PlannedSession>, Error> {
+    let mut plan = PlannedSession::read(path)?;
     if let Some(plan) = &mut plan
         && let Some(earlier) = &plan.earlier
     {

@@ -10,7 +10,7 @@ use super::calibrate::calibrate_reduced;
 use crate::document::{CalibrationResult, Method, RecordFindings};
 use crate::error::{Error, ErrorKind, Place};
 use crate::experiment::{
-    EXPERIMENT_FILE, PlateauMean, RestTable, Session, SpeedSource, refuse_another_session, write_attitudes,
+    EXPERIMENT_FILE, PlateauRow, RestTable, Session, SpeedSource, refuse_another_session, write_attitudes,
     write_plateaus, write_plateaus_parquet,
 };
 use crate::reduced::Reduced;
@@ -43,7 +43,7 @@ pub fn write_reduced(
         return Err(Error::content(&experiment_file, Place::Whole, "the session itself", expected));
     }
     refuse_another_session(folder, session)?;
-    let (name, write): (_, fn(&Path, &[PlateauMean]) -> _) = match format {
+    let (name, write): (_, fn(&Path, &[PlateauRow]) -> _) = match format {
         TableFormat::Csv => ("plateaus.csv", write_plateaus),
         TableFormat::Parquet => ("plateaus.parquet", write_plateaus_parquet),
     };

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use centrical_session::{
-    Error, ErrorKind, Folder, Method, PlateauMean, PlateauTable, Recorded, Session, TableFormat, calibrate,
+    Error, ErrorKind, Folder, Method, PlateauRow, PlateauTable, Recorded, Session, TableFormat, calibrate,
     calibrate_reduced, reduce, reduce_recorded, unwatched, write_reduced,
 };
 
@@ -123,7 +123,7 @@ fn plateaus_from_memory_are_those_of_a_file() {
     write_reduced(&session, &reduced, None, TableFormat::Csv, folder.path(), &unwatched).unwrap();
     let from_file = Session::read(folder.path()).unwrap();
     let rows = &from_file.plateaus.as_ref().unwrap().rows;
-    let column = |of: &dyn Fn(&PlateauMean) -> f64| rows.iter().map(of).collect::<Vec<f64>>();
+    let column = |of: &dyn Fn(&PlateauRow) -> f64| rows.iter().map(of).collect::<Vec<f64>>();
     let mut columns = vec![
         column(&|p| (p.mounting + 1) as f64),
         column(&|p| p.speed),

@@ -2,7 +2,7 @@ use std::fs;
 use std::path::Path;
 
 use centrical_compensate::{Compensation, Term};
-use centrical_session::{Columns, Compensated, Record, RecordReader, RecordWriter, compensate_record, unwatched};
+use centrical_session::{Columns, CompensatedRecord, Record, RecordReader, RecordWriter, compensate_record, unwatched};
 use proptest::prelude::*;
 
 /// A record of `rows` rows whose numbers need all their digits.
@@ -45,7 +45,7 @@ proptest! {
         writer.write(record.as_slice()).unwrap();
         writer.finish().unwrap();
         let compensated = compensate_record(&compensation, &input, &Columns::default(), &output, &unwatched).unwrap();
-        let expected = Compensated { readings: rows as u64, ..Compensated::default() };
+        let expected = CompensatedRecord { readings: rows as u64, ..CompensatedRecord::default() };
         prop_assert_eq!(compensated, expected);
         compensation.apply_all(record.f_z.each_mut().map(Vec::as_mut_slice)).unwrap();
         prop_assert!(read(&output) == record);

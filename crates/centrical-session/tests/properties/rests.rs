@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use centrical::observability::cube_directions;
 use centrical::{Experiment, History, MeasurementModel, Mounting, Position, SetPoint};
 use centrical_session::{
-    Axes, CalibrationResult, Method, PlateauMean, Session, TableFormat, calibrate, read_plan, reduce, unwatched,
+    Axes, CalibrationResult, Method, PlateauRow, Session, TableFormat, calibrate, read_plan, reduce, unwatched,
     write_plateaus, write_reduced,
 };
 use nalgebra::{DMatrix, DVector, Matrix3, Rotation3, Vector3};
@@ -27,7 +27,7 @@ fn reduced_example(folder: &Path) -> CalibrationResult {
 }
 
 /// Rests of the unit with these coefficients on the faces, edges and corners of a cube.
-fn rests(session: &Session, result: &CalibrationResult, random: &mut Random) -> Vec<PlateauMean> {
+fn rests(session: &Session, result: &CalibrationResult, random: &mut Random) -> Vec<PlateauRow> {
     let steps = || [-1.0, 0.0, 1.0].into_iter();
     let all = steps().flat_map(|x| steps().flat_map(move |y| steps().map(move |z| Vector3::new(x, y, z))));
     let mut experiment = Experiment {
@@ -45,7 +45,7 @@ fn rests(session: &Session, result: &CalibrationResult, random: &mut Random) -> 
     let of_unit = |name: &str| result.parameter(name).and_then(|parameter| parameter.value);
     let tremble = |random: &mut Random| 0.02 * random.normal();
     let x: Vec<f64> = model.parameters().iter().map(|p| of_unit(&p.name).unwrap_or_else(|| tremble(random))).collect();
-    let row = |(mounting, set_point): (usize, &SetPoint)| PlateauMean {
+    let row = |(mounting, set_point): (usize, &SetPoint)| PlateauRow {
         mounting,
         speed: 0.0,
         speed_uncertainty: None,
@@ -181,7 +181,7 @@ fn errors_in_axes_of_the_case_are_as_large_as_stated() {
             writeln!(attitudes, "{},{},{}", stated[0], stated[1], stated[2]).unwrap();
             let tilt = normal(UNCERTAINTY);
             let up = Rotation3::from_scaled_axis(tilt - stated * stated.dot(&tilt)) * stated;
-            rests.push(PlateauMean {
+            rests.push(PlateauRow {
                 mounting,
                 speed: 0.0,
                 speed_uncertainty: None,
@@ -223,7 +223,7 @@ fn planned_rests_are_those_that_will_be_measured() {
     for (durations, seconds) in [("", 60.0), ("duration = \"10 s\"", 10.0)] {
         let planned = plan(&format!("[[tumble]]\nattitudes = \"cube\"\n{durations}"));
         let weight = planned.noise.weight(0, seconds);
-        let rows = cube_directions().into_iter().enumerate().map(|(mounting, up_b)| PlateauMean {
+        let rows = cube_directions().into_iter().enumerate().map(|(mounting, up_b)| PlateauRow {
             mounting,
             speed: 0.0,
             speed_uncertainty: None,

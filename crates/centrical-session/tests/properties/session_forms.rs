@@ -6,7 +6,7 @@ use std::path::Path;
 
 use centrical::{ErrorModel, Experiment, Group, Monomial, PairRelation, ReferencePoint};
 use centrical_session::{
-    Column, ColumnName, Measured, PlateauMean, Scale, Session, SpeedSource, Speeds, write_plateaus,
+    Column, ColumnName, Measured, PlateauRow, Scale, Session, SpeedSource, Speeds, write_plateaus,
 };
 use nalgebra::{Matrix3, Vector3};
 
@@ -176,7 +176,7 @@ fn columns_by_name_number_unit_and_rate() {
 fn plateaus_instead_of_records() {
     let folder = tempfile::tempdir().unwrap();
     let mean = Vector3::new(0.1, -98.0, 9.8);
-    let plateau = |mounting, speed, angle| PlateauMean {
+    let plateau = |mounting, speed, angle| PlateauRow {
         mounting,
         speed,
         speed_uncertainty: None,

@@ -18,7 +18,7 @@ use std::mem;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::law::{Law, Part};
+use super::law::{NormalMixture, Part};
 use super::line::{Curve, Line};
 use super::quantiles::Quantiles;
 use super::series::{Point, Series};
@@ -70,10 +70,10 @@ impl Between {
 impl Likely {
     /// The law of the error of a reading, compensated by a calibration that states the variance `stated` of it, after another switch-on: both
     /// sessions deviate, `N(0, stated + 2 tau^2)`.
-    pub fn after_switch_on(&self, stated: f64) -> Law {
+    pub fn after_switch_on(&self, stated: f64) -> NormalMixture {
         let part =
             |(weight, tau): &(f64, f64)| Part { weight: *weight, mean: 0.0, deviation: (stated + 2.0 * tau).sqrt() };
-        Law::new(self.0.iter().map(part))
+        NormalMixture::new(self.0.iter().map(part))
     }
 
     /// The distribution of the component that `series` have in common; `None` as of [`Between::of`].

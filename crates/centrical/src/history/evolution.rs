@@ -6,7 +6,7 @@
 //! al., Statistical Methods in Medical Research 28, 2019). With `v_i = 0` that is Student's t.
 
 use super::between::{Between, Likely};
-use super::law::{Law, Part};
+use super::law::{NormalMixture, Part};
 use super::line::{Curve, Line};
 use super::quantiles::Quantiles;
 use super::series::Series;
@@ -28,7 +28,7 @@ enum Spread {
     /// Student's t with its degrees of freedom.
     StudentsT(usize),
     /// That, and what sessions share.
-    Law(Law),
+    Law(NormalMixture),
 }
 
 impl Estimated {
@@ -45,7 +45,7 @@ impl Estimated {
 
     /// Probability of an estimate as far from zero, or farther, if the true value is zero.
     pub fn probability(&self) -> f64 {
-        let below = |law: &Law| law.probability_below(0.0);
+        let below = |law: &NormalMixture| law.probability_below(0.0);
         match &self.spread {
             // Sessions that agree to the last digit have no scatter to measure it by.
             Spread::StudentsT(_) if self.value == 0.0 => 1.0,
@@ -119,7 +119,7 @@ impl Evolution<'_> {
 
     /// The law of the slope: a part for each value `c` of chi^2, with the variance `(Q(tau^2) / c) / spread`: `Q = c` but where the sessions scatter by less than they
     /// state, `Q(0) <= c`, and `tau^2` is zero.
-    fn slopes(&self, shared: impl Fn(&Line) -> f64) -> Law {
+    fn slopes(&self, shared: impl Fn(&Line) -> f64) -> NormalMixture {
         let part = |weight: f64, line: &Line, part_of_stated: f64| {
             let variance = part_of_stated / line.spread + shared(line);
             Part { weight, mean: line.slope, deviation: variance.sqrt() }
@@ -130,7 +130,7 @@ impl Evolution<'_> {
             (part_of_stated <= 1.0).then_some(part(*weight, &at_zero?.2, part_of_stated))
         });
         let beyond = self.likely.iter().filter(|(_, tau, _)| *tau > 0.0);
-        Law::new(less.chain(beyond.map(|(weight, _, line)| part(*weight, line, 1.0))))
+        NormalMixture::new(less.chain(beyond.map(|(weight, _, line)| part(*weight, line, 1.0))))
     }
 
     fn estimated(&self, value: f64, weighted_variance: f64, shared: f64) -> Estimated {
@@ -141,7 +141,7 @@ impl Evolution<'_> {
             deviation: (own / scale + shared).sqrt(),
         };
         let spread = if shared > 0.0 {
-            Spread::Law(Law::new(self.scales.iter().map(part)))
+            Spread::Law(NormalMixture::new(self.scales.iter().map(part)))
         } else {
             Spread::StudentsT(self.degrees_of_freedom)
         };
@@ -149,8 +149,8 @@ impl Evolution<'_> {
     }
 
     /// The true value after a switch-on at `time`.
-    pub fn forecast(&self, time: f64) -> Law {
-        Law::new(self.likely.iter().map(|(weight, tau, line)| {
+    pub fn forecast(&self, time: f64) -> NormalMixture {
+        NormalMixture::new(self.likely.iter().map(|(weight, tau, line)| {
             let variance = tau + line.variance_at(time) + line.shared_variance_at(self.series, time);
             Part { weight: *weight, mean: line.at(time), deviation: variance.sqrt() }
         }))

@@ -7,7 +7,7 @@ use statrs::function::erf::erfc;
 
 /// The law of a value that is estimated, or to come.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Law {
+pub struct NormalMixture {
     parts: Vec<Part>,
 }
 
@@ -39,7 +39,7 @@ impl Part {
     }
 }
 
-impl Law {
+impl NormalMixture {
     /// The mixture of `parts`.
     pub(super) fn new(parts: impl Iterator<Item = Part>) -> Self {
         Self { parts: parts.collect() }

@@ -10,7 +10,7 @@ use crate::progress::{OnProgress, advance};
 
 /// The purpose of a part of a schedule.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Reason {
+pub struct VisitReason {
     /// The criterion without it over that with it, less 1 (variance units).
     pub rise: f64,
     /// Time that it takes [s], with the set-up that would fall away.
@@ -25,10 +25,10 @@ pub struct Reason {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Rationale {
     /// By visit of the schedule.
-    pub visits: Vec<Reason>,
+    pub visits: Vec<VisitReason>,
     /// By set-up, all its visits together: the mountings of the candidates on the arm, then all rests beside it; `None` for one that
     /// is not used.
-    pub set_ups: Vec<Option<Reason>>,
+    pub set_ups: Vec<Option<VisitReason>>,
 }
 
 impl Rationale {
@@ -114,13 +114,13 @@ impl<'a> Reference<'a> {
         visits
     }
 
-    fn without(&self, visits: &[usize]) -> Reason {
+    fn without(&self, visits: &[usize]) -> VisitReason {
         let (value, goals) = self.judged(visits);
         let factor = |n: usize| (goals[n] / self.goals[n]).sqrt();
         let most = (0..goals.len()).max_by(|&a, &b| factor(a).total_cmp(&factor(b)).then(b.cmp(&a))).unwrap_or(0);
         let kept = (0..self.schedule.visits.len()).filter(|n| !visits.contains(n)).map(|n| self.schedule.visits[n]);
         let kept: Vec<_> = kept.collect();
-        Reason {
+        VisitReason {
             rise: (value - self.value).exp() - 1.0,
             time: self.schedule.time - self.problem.candidates.time_of(&kept),
             parameter: self.parameters[most],

@@ -23,7 +23,7 @@ pub struct Estimates {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Comparison {
     /// Parameters that both determine, in the order of A.
-    pub differences: Vec<Difference>,
+    pub differences: Vec<ParameterDifference>,
     /// `d^T (C_A + C_B)^-1 d` of all of them; `None` if the sum is not positive definite.
     pub chi_squared: Option<f64>,
     /// Probability of so large a `chi_squared` if nothing has changed.
@@ -32,7 +32,7 @@ pub struct Comparison {
 
 /// One parameter in both.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Difference {
+pub struct ParameterDifference {
     /// Name.
     pub name: String,
     /// B less A [its unit].
@@ -47,7 +47,7 @@ pub struct Difference {
     pub probability: f64,
 }
 
-impl Difference {
+impl ParameterDifference {
     /// Whether this parameter alone shows that the two calibrations disagree.
     pub fn is_real(&self) -> bool {
         self.probability < 0.5 * Level::Disagreement.probability()
@@ -60,7 +60,7 @@ impl Comparison {
     pub fn agrees(&self) -> bool {
         let agree_jointly =
             self.probability.is_some_and(|probability| probability > 0.5 * Level::Disagreement.probability());
-        !self.differences.is_empty() && agree_jointly && !self.differences.iter().any(Difference::is_real)
+        !self.differences.is_empty() && agree_jointly && !self.differences.iter().any(ParameterDifference::is_real)
     }
 }
 
@@ -77,7 +77,7 @@ impl Estimates {
             let ((i, k), (j, l)) = (shared[m], shared[n]);
             self.covariance[(i, j)] + other.covariance[(k, l)]
         });
-        let differences: Vec<Difference> = shared
+        let differences: Vec<ParameterDifference> = shared
             .iter()
             .enumerate()
             .map(|(n, &(i, k))| {
@@ -86,7 +86,7 @@ impl Estimates {
                 let square = (difference / standard_uncertainty).powi(2);
                 let alone = if difference == 0.0 { 1.0 } else { chi_squared_tail(square, 1) };
                 let probability = (shared.len() as f64 * alone).min(1.0);
-                Difference { name: self.names[i].clone(), difference, standard_uncertainty, e_n, probability }
+                ParameterDifference { name: self.names[i].clone(), difference, standard_uncertainty, e_n, probability }
             })
             .collect();
         let chi_squared = weighted_square(differences.iter().map(|d| d.difference), &covariance);

@@ -26,12 +26,12 @@ pub struct Settings {
     /// Probability that the intervals are to cover, in (0, 1).
     pub coverage: f64,
     /// The fit that is repeated.
-    pub method: Method,
+    pub method: FitMethod,
 }
 
 /// The fit that is repeated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Method {
+pub enum FitMethod {
     /// Gauss-Newton on the exact model.
     Exact,
     /// The linear fit, on readings of the exact model.
@@ -171,8 +171,8 @@ impl<'a> Laboratory<'a> {
         let drawn = self.draw(&truth, &mut random);
         let drawn = Data::new(self.data.model(), drawn)?;
         let fit = match self.settings.method {
-            Method::Exact => self.structure.exact(&drawn)?,
-            Method::Linear => self.structure.linear(&drawn)?,
+            FitMethod::Exact => self.structure.exact(&drawn)?,
+            FitMethod::Linear => self.structure.linear(&drawn)?,
         };
         Ok(self.judge(&fit, &truth))
     }

@@ -67,7 +67,7 @@ pub struct NestedTest {
 
 /// The candidates and what follows.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Selection {
+pub struct ModelSelection {
     /// In the order of the candidates, without rivals that the data determine nothing of.
     pub candidates: Vec<FittedCandidate>,
     /// Index of the candidate recommended: the lowest BIC of those that converged, the simplest of those alike.
@@ -121,7 +121,7 @@ fn with_rivals(model: &MeasurementModel, rivals: Vec<Rival>) -> Candidate {
     Candidate { name: format!("{AS_STATED} + {}", names.join(" + ")), model: model.with_rivals(&rivals), rivals }
 }
 
-impl Selection {
+impl ModelSelection {
     /// Compares the candidates beside `model`, and the model with pairs of the three rivals that lower BIC most.
     ///
     /// # Errors
@@ -195,7 +195,7 @@ fn fits<'c>(
 }
 
 /// Compares the fits.
-fn conclude(fits: &[(&Candidate, Calibration)]) -> Result<Selection, FitError> {
+fn conclude(fits: &[(&Candidate, Calibration)]) -> Result<ModelSelection, FitError> {
     let fits = with_further_unknowns(fits);
     let mut fitted: Vec<FittedCandidate> = fits
         .iter()
@@ -217,7 +217,7 @@ fn conclude(fits: &[(&Candidate, Calibration)]) -> Result<Selection, FitError> {
     let best = Best(&fits[recommended].1);
     let mut terms = best.own_terms();
     terms.extend(best.further_terms(&candidates)?);
-    Ok(Selection { candidates: fitted, recommended, terms })
+    Ok(ModelSelection { candidates: fitted, recommended, terms })
 }
 
 fn candidate_fitted(candidate: &Candidate, calibration: &Calibration) -> Result<FittedCandidate, FitError> {

@@ -40,7 +40,7 @@ pub struct PlateauCheck {
     /// Part of its three readings that the fit follows, 0 to 1.
     pub leverage: f64,
     /// How well the others predict it.
-    pub prediction: Prediction,
+    pub prediction: LeftOutPrediction,
 }
 
 /// The check of one mounting: predicted from all others.
@@ -49,12 +49,12 @@ pub struct MountingCheck {
     /// Index of the mounting.
     pub mounting: usize,
     /// How well the others predict it.
-    pub prediction: Prediction,
+    pub prediction: LeftOutPrediction,
 }
 
 /// A block of readings against its prediction from all other readings.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Prediction {
+pub struct LeftOutPrediction {
     /// Fall of chi^2 without the block.
     pub statistic: f64,
     /// Readings of the block that the others predict at all.
@@ -126,7 +126,7 @@ impl Validity {
         (0..self.plateaus.len()).min_by(place).filter(|&n| self.plateaus[n].prediction.probability < each)
     }
 
-    /// Mean [`Prediction::score`] per reading when each mounting is predicted from all others: 1 and a little more for a
+    /// Mean [`LeftOutPrediction::score`] per reading when each mounting is predicted from all others: 1 and a little more for a
     /// true model, more for one that lacks a term or has too many.
     pub fn hold_out_score(&self) -> f64 {
         let sum: f64 = self.mountings.iter().map(|m| m.prediction.score).sum();
@@ -190,7 +190,7 @@ impl Blocks<'_> {
 
     /// The readings of the observations `members` from all others, along the principal directions of `E - H_bb`; those
     /// in which nothing is redundant are left out.
-    fn predict(&self, members: &[usize]) -> Prediction {
+    fn predict(&self, members: &[usize]) -> LeftOutPrediction {
         let rows: Vec<usize> = members.iter().flat_map(|n| 3 * n..3 * n + 3).collect();
         let residuals = DVector::from_fn(rows.len(), |a, _| self.residuals[rows[a]]);
         let Principal { components, shares, beyond } = Principal::of(&self.basis.select_rows(&rows), &residuals);
@@ -209,7 +209,7 @@ impl Blocks<'_> {
         score += statistic;
         let left = self.degrees_of_freedom.saturating_sub(degrees_of_freedom);
         let probability = chance_of_explaining(statistic, degrees_of_freedom, self.chi_squared - statistic, left);
-        Prediction { statistic, degrees_of_freedom, score, probability }
+        LeftOutPrediction { statistic, degrees_of_freedom, score, probability }
     }
 }
 

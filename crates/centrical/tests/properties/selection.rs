@@ -1,4 +1,4 @@
-use centrical::uncertainty::{Candidate, Selection};
+use centrical::uncertainty::{Candidate, ModelSelection};
 use centrical::{ErrorModel, Extension, Group, Law, MeasurementModel, Monomial, Term, unwatched};
 use rayon::prelude::*;
 
@@ -46,7 +46,7 @@ fn five_sigma_is_kept_and_nothing_is_rejected() {
                         rivals: Vec::new(),
                         model: model.clone(),
                     });
-                    let selection = Selection::of(&candidates, &data, &unwatched).unwrap();
+                    let selection = ModelSelection::of(&candidates, &data, &unwatched).unwrap();
                     let verdict = selection.terms.iter().find(|t| t.name == term).unwrap();
                     ((selection.recommended == 1) == present, verdict.kept == present)
                 })
@@ -64,7 +64,7 @@ fn five_sigma_is_kept_and_nothing_is_rejected() {
 fn the_true_model_is_recommended() {
     let (model, mut random) = (source_model(), Random::new(21));
     let data = session(&model, &truth(&model, 1.0, &mut random), &mut random);
-    let selection = Selection::beside(&model, &data, &unwatched).unwrap();
+    let selection = ModelSelection::beside(&model, &data, &unwatched).unwrap();
     let names: Vec<&str> = selection.candidates.iter().map(|r| r.name.as_str()).collect();
     // Three parts of the model, the model, and rivals of the catalogue.
     assert!(names.len() > 4 + 20, "{names:?}");
@@ -93,7 +93,7 @@ fn a_stated_extension_is_in_the_model_as_stated() {
     let mut random = Random::new(5);
     let mut x = truth(&model, 1.0, &mut random);
     x[model.parameters().find("stretch_speed").unwrap()] = 2e-7;
-    let selection = Selection::beside(&model, &session(&model, &x, &mut random), &unwatched).unwrap();
+    let selection = ModelSelection::beside(&model, &session(&model, &x, &mut random), &unwatched).unwrap();
     let recommended = &selection.candidates[selection.recommended];
     assert_eq!((recommended.name.as_str(), recommended.unknowns), ("as stated", model.parameters().len()));
 }
@@ -105,7 +105,7 @@ fn rivals_that_are_not_seen_are_no_candidates() {
     let model = source_model();
     let mut random = Random::new(7);
     let x = truth(&model, 1.0, &mut random);
-    let selection = Selection::beside(&model, &session(&model, &x, &mut random), &unwatched).unwrap();
+    let selection = ModelSelection::beside(&model, &session(&model, &x, &mut random), &unwatched).unwrap();
     let as_stated = selection.candidates.iter().find(|c| c.name == "as stated").unwrap();
     let ranks: Vec<usize> = selection.candidates.iter().filter(|c| !c.rivals.is_empty()).map(|c| c.rank).collect();
     assert!(ranks.len() > 20 && ranks.iter().all(|rank| *rank > as_stated.rank), "{ranks:?}");
@@ -123,7 +123,7 @@ fn a_recommendation_is_no_chance_where_nothing_fits() {
         let fastest = wrong.set_points.iter().map(|s| s.omega).fold(0.0, f64::max);
         wrong.set_points.iter_mut().filter(|s| s.omega == fastest).for_each(|s| s.omega *= 1.005);
         let data = session(&model.in_experiment(wrong), &x, &mut random);
-        let selection = Selection::beside(&model, &data, &unwatched).unwrap();
+        let selection = ModelSelection::beside(&model, &data, &unwatched).unwrap();
         let recommended = &selection.candidates[selection.recommended];
         let chi_squared = recommended.chi_squared / recommended.degrees_of_freedom as f64;
         println!("{} {chi_squared:.0} {:?}", recommended.name, recommended.against);
@@ -136,5 +136,5 @@ fn a_recommendation_is_no_chance_where_nothing_fits() {
 fn no_candidate_is_an_error() {
     let model = source_model();
     let data = observations(&model, &truth(&model, 1.0, &mut Random::new(3)));
-    assert!(Selection::of(&[], &data, &unwatched).is_err());
+    assert!(ModelSelection::of(&[], &data, &unwatched).is_err());
 }

@@ -1,6 +1,6 @@
 //! How far a result can be trusted: the uncertainties by their sources, and the checks of the fit.
 
-use centrical::uncertainty::{BetweenRests, Budget, Level, Pattern, Prediction, Rivals, Trend, Validity};
+use centrical::uncertainty::{BetweenRests, Budget, LeftOutPrediction, Level, Pattern, Rivals, Trend, Validity};
 use centrical::{Calibration, Experiment, FitError};
 use centrical::{Prior, Source};
 use serde::{Deserialize, Serialize};
@@ -211,7 +211,7 @@ impl ValiditySummary {
             .filter(|plateau| Level::Reported.is_passed_by(plateau.probability))
             .collect();
         outlying.sort_by(|a, b| a.probability.total_cmp(&b.probability));
-        let prediction = |mounting: usize, p: &Prediction| MountingPrediction {
+        let prediction = |mounting: usize, p: &LeftOutPrediction| MountingPrediction {
             mounting: mounting + 1,
             chi_squared: p.statistic,
             degrees_of_freedom: p.degrees_of_freedom,

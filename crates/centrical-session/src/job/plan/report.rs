@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use centrical::plan::{
-    Candidates, Criterion, Effort, FrontierPoint, Goal, Plan, PlanError, Prediction, Rationale, Reached, Reason,
-    Robustness, Schedule, Task, Visit,
+    Candidates, Criterion, Effort, FrontierPoint, Goal, Plan, PlanError, Prediction, Rationale, Reached, Robustness,
+    Schedule, Task, Visit, VisitReason,
 };
 use centrical::{Experiment, Group, OnProgress, SetPoint};
 
@@ -142,7 +142,7 @@ fn rests(planning: &Planning, plan: &Plan, rationale: &Rationale) -> Option<Chos
     let RestSource::Plan(planned) = &table.source else { return None };
     let first = planning.task.candidates.len() - table.count();
     let reasons = rationale.visits.iter().zip(&plan.schedule.visits);
-    let rest = |(why, visit): (&Reason, &Visit)| {
+    let rest = |(why, visit): (&VisitReason, &Visit)| {
         let up = planned.up_b[visit.candidate.checked_sub(first)?];
         Some(ChosenRest { up: up.into(), duration: visit.duration, reason: reason(&planning.task, why) })
     };
@@ -153,7 +153,7 @@ fn rests(planning: &Planning, plan: &Plan, rationale: &Rationale) -> Option<Chos
     })
 }
 
-fn reason(task: &Task, reason: &Reason) -> ReasonReport {
+fn reason(task: &Task, reason: &VisitReason) -> ReasonReport {
     ReasonReport {
         rise: (1.0 + reason.rise).sqrt() - 1.0,
         time: reason.time,
