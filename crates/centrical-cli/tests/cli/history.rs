@@ -196,6 +196,23 @@ fn what_is_read_is_not_written() {
     }
 }
 
+/// Copies of one session that are calibrated together have one reduced session, and none of them fails.
+#[test]
+fn copies_of_a_session_are_kept_reduced_once() {
+    let (folder, names) = sessions(2);
+    let copies: Vec<String> = (0..8).map(|n| format!("copy{n}")).collect();
+    for copy in &copies {
+        fs::create_dir(folder.path().join(copy)).unwrap();
+        for file in ["experiment.toml", "plateaus.csv"] {
+            fs::copy(folder.path().join(&names[0]).join(file), folder.path().join(copy).join(file)).unwrap();
+        }
+    }
+    let output = series(folder.path(), &copies, "fleet").args(["--reduced", "--jobs", "8"]).output().unwrap();
+    let summary: Value = serde_json::from_slice(&output.stdout).expect("a document");
+    assert_eq!((&summary["sessions"], &summary["failed"]), (&json!(8), &json!(0)), "{output:?}");
+    assert_eq!(fs::read_dir(folder.path().join("fleet/reduced")).unwrap().count(), 1);
+}
+
 /// Sixteen processes add results to one store, and each is killed after a few milliseconds, whatever it does. What was added stays whole, and
 /// the same commands once more leave every result once.
 #[test]

@@ -8,6 +8,7 @@ mod workers;
 use std::collections::{BTreeSet, HashSet};
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::Mutex;
 
 use centrical::{OnProgress, Stopped};
 use centrical_table::{Outputs, claim_folder};
@@ -54,7 +55,7 @@ pub fn calibrate_series(
         }
     }
     let known = sessions.len() - due.len();
-    Workers { request, store: &store, progress }.run(&due, &mut ledger)?;
+    Workers { request, store: &store, progress, writing: Mutex::default() }.run(&due, &mut ledger)?;
     let summary = write_tables(request, &store, &ledger, &sessions)?;
     Ok(SeriesSummary { known, ..summary })
 }

@@ -2,6 +2,7 @@
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
 
 use centrical::OnProgress;
 use centrical_table::TableFormat;
@@ -64,11 +65,16 @@ pub(super) struct Done {
     pub files: Vec<(std::path::PathBuf, String)>,
 }
 
-/// Calibrates a session; nothing if the caller stopped it. A fault of the program inside one session is a failure of that session.
-pub(super) fn calibrated(path: &Path, request: &SeriesRequest, progress: OnProgress) -> Option<Done> {
+/// Calibrates a session, and writes the reduced one while no other thread is `writing`; nothing if the caller stopped it. A fault of the program inside one session is a failure of that session.
+pub(super) fn calibrated(
+    path: &Path,
+    request: &SeriesRequest,
+    writing: &Mutex<()>,
+    progress: OnProgress,
+) -> Option<Done> {
     let failed =
         |failure| Done { row: Row::failed(&path.display().to_string(), failure), result: None, files: Vec::new() };
-    match catch_unwind(AssertUnwindSafe(|| try_calibrate(path, request, progress))) {
+    match catch_unwind(AssertUnwindSafe(|| try_calibrate(path, request, writing, progress))) {
         Ok(Ok(done)) => Some(done),
         Ok(Err(error)) if error.kind() == ErrorKind::Stopped => None,
         Ok(Err(error)) => Some(failed(failure(&error))),
@@ -79,7 +85,12 @@ pub(super) fn calibrated(path: &Path, request: &SeriesRequest, progress: OnProgr
     }
 }
 
-fn try_calibrate(path: &Path, request: &SeriesRequest, progress: OnProgress) -> Result<Done, Error> {
+fn try_calibrate(
+    path: &Path,
+    request: &SeriesRequest,
+    writing: &Mutex<()>,
+    progress: OnProgress,
+) -> Result<Done, Error> {
     let session = Session::read(path)?;
     let (session, reduced) = reduce(&session, progress)?;
     let result: CalibrationResult = calibrate_reduced(&session, &reduced, request.method, progress)?;
@@ -88,6 +99,8 @@ fn try_calibrate(path: &Path, request: &SeriesRequest, progress: OnProgress) -> 
     if request.reduced {
         let exact = (request.method == Method::Exact).then_some(&result);
         let folder = request.out.join("reduced").join(&row.key);
+        // Sessions of equal files have one folder.
+        let _one = writing.lock().unwrap_or_else(PoisonError::into_inner);
         write_reduced(&session, &reduced, exact, TableFormat::Csv, &folder, progress)?;
     }
     let hashes = result.inputs.into_iter().map(|input| input.sha256);

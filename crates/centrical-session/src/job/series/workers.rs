@@ -2,6 +2,7 @@
 
 use std::ops::ControlFlow;
 use std::path::Path;
+use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
 use std::time::{Duration, Instant};
@@ -27,6 +28,8 @@ pub(super) struct Workers<'a> {
     pub request: &'a SeriesRequest,
     pub store: &'a Store,
     pub progress: OnProgress<'a, usize>,
+    /// Held by the thread that writes a reduced session.
+    pub writing: Mutex<()>,
 }
 
 impl Workers<'_> {
@@ -58,7 +61,7 @@ impl Workers<'_> {
         while progress(0_u64).is_continue() {
             let number = next.fetch_add(1, Ordering::Relaxed);
             let Some(session) = sessions.get(number) else { break };
-            let one = || calibrated(session, self.request, &progress);
+            let one = || calibrated(session, self.request, &self.writing, &progress);
             // If no pool can be made, all threads share the one there is.
             let done = pool.as_ref().map_or_else(|_| one(), |pool| pool.install(one));
             if done.is_none_or(|done| send.send((number, done)).is_err()) {
