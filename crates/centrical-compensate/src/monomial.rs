@@ -47,6 +47,32 @@ impl Monomial {
         Self { powers, sign_of: None }
     }
 
+    /// Of a text such as [`Display`](fmt::Display) writes; `None` of any other. An absolute value is the factor with its own sign: `|f| = sign(f) f`.
+    pub fn parse(text: &str) -> Option<Self> {
+        let mut monomial = Self::ONE;
+        if text.trim() == "1" {
+            return Some(monomial);
+        }
+        let mut absolute = [false; 3];
+        for factor in text.split('*') {
+            let (base, power) = factor.split_once('^').unwrap_or((factor, "1"));
+            let power: u8 = power.trim().parse().ok().filter(|p| *p > 0)?;
+            let base = base.trim();
+            if let Some(signed) = base.strip_prefix("sgn(").and_then(|b| b.strip_suffix(')')) {
+                let axis = ["f1", "f2", "f3"].iter().position(|name| *name == signed.trim())?;
+                absolute[axis] ^= power % 2 == 1;
+                continue;
+            }
+            let inner = base.strip_prefix('|').and_then(|b| b.strip_suffix('|'));
+            let axis = ["f1", "f2", "f3"].iter().position(|name| *name == inner.unwrap_or(base).trim())?;
+            monomial.powers[axis] = monomial.powers[axis].checked_add(power)?;
+            absolute[axis] ^= inner.is_some() && power % 2 == 1;
+        }
+        let mut signs = (0..3).filter(|j| absolute[*j]);
+        monomial.sign_of = signs.next();
+        signs.next().is_none().then_some(monomial)
+    }
+
     /// Sum of the powers.
     pub fn degree(&self) -> u16 {
         self.powers.into_iter().map(u16::from).sum()
@@ -150,4 +176,40 @@ fn power_by_squaring(mut x: f64, mut n: u8) -> f64 {
         n /= 2;
     }
     power
+}
+
+#[cfg(test)]
+mod tests {
+    use std::string::ToString as _;
+
+    use super::Monomial;
+
+    #[test]
+    fn terms_are_read_and_written_in_one_way() {
+        let cases = [
+            ("1", "1"),
+            ("f1", "f1"),
+            (" f2 * f1 ", "f1*f2"),
+            ("|f2|*f2", "f2*|f2|"),
+            ("f3^2*f3", "f3^3"),
+            ("|f1|^2", "f1^2"),
+            ("|f1|^3", "f1^2*|f1|"),
+            ("|f3|", "|f3|"),
+            ("sgn(f2)", "sgn(f2)"),
+            ("sgn(f1)*f1", "|f1|"),
+            ("f1*f1*f2^2*|f3|", "f1^2*f2^2*|f3|"),
+        ];
+        for (text, expected) in cases {
+            let read = Monomial::parse(text).unwrap();
+            assert_eq!(read.to_string(), expected);
+            assert_eq!(Monomial::parse(expected), Some(read), "{text}");
+        }
+    }
+
+    #[test]
+    fn what_is_no_term_is_refused() {
+        for text in ["", "f4", "f1*", "f1^0", "f1^-1", "f1^255*f1^255", "|f1|*|f2|", "f1+f2", "2*f1", "|f1"] {
+            assert_eq!(Monomial::parse(text), None, "{text}");
+        }
+    }
 }

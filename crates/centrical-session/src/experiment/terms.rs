@@ -66,7 +66,7 @@ fn written(at: &TomlPath, table: &TermTable, preset: &[Term]) -> Result<Term, Er
         return Err(at.unexpected("error_model", format!("axis = {axis}"), "axis = 1, 2 or 3"));
     }
     let axis = axis - 1;
-    let monomial = monomial(term).ok_or_else(|| {
+    let monomial = Monomial::parse(term).filter(|monomial| monomial.degree() <= HIGHEST_DEGREE).ok_or_else(|| {
         let expected = format!(
             "a product of powers of f1, f2, f3 and at most one of |f1|, |f2|, |f3|, \
             of degree {HIGHEST_DEGREE} at most, such as f1*f2, f2*|f2|, f1^3 or 1"
@@ -77,64 +77,4 @@ fn written(at: &TomlPath, table: &TermTable, preset: &[Term]) -> Result<Term, Er
         return Ok(known.clone());
     }
     Ok(Term::new(axis, monomial))
-}
-
-/// `f1*f2`, `f2*|f2|`, `f1^3`, `1`. An absolute value is the factor with its own sign: `|f| = sign(f) f`.
-fn monomial(text: &str) -> Option<Monomial> {
-    let mut monomial = Monomial::ONE;
-    if text.trim() == "1" {
-        return Some(monomial);
-    }
-    let mut absolute = [false; 3];
-    for factor in text.split('*') {
-        let (base, power) = factor.split_once('^').unwrap_or((factor, "1"));
-        let power: u8 = power.trim().parse().ok().filter(|p| *p > 0)?;
-        let base = base.trim();
-        if let Some(signed) = base.strip_prefix("sgn(").and_then(|b| b.strip_suffix(')')) {
-            let axis = ["f1", "f2", "f3"].iter().position(|name| *name == signed.trim())?;
-            absolute[axis] ^= power % 2 == 1;
-            continue;
-        }
-        let inner = base.strip_prefix('|').and_then(|b| b.strip_suffix('|'));
-        let axis = ["f1", "f2", "f3"].iter().position(|name| *name == inner.unwrap_or(base).trim())?;
-        monomial.powers[axis] = monomial.powers[axis].checked_add(power)?;
-        absolute[axis] ^= inner.is_some() && power % 2 == 1;
-    }
-    let mut signs = (0..3).filter(|j| absolute[*j]);
-    monomial.sign_of = signs.next();
-    (signs.next().is_none() && monomial.degree() <= HIGHEST_DEGREE).then_some(monomial)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn terms_are_read_and_written_in_one_way() {
-        let cases = [
-            ("1", "1"),
-            ("f1", "f1"),
-            (" f2 * f1 ", "f1*f2"),
-            ("|f2|*f2", "f2*|f2|"),
-            ("f3^2*f3", "f3^3"),
-            ("|f1|^2", "f1^2"),
-            ("|f1|^3", "f1^2*|f1|"),
-            ("|f3|", "|f3|"),
-            ("sgn(f2)", "sgn(f2)"),
-            ("sgn(f1)*f1", "|f1|"),
-            ("f1*f1*f2^2*|f3|", "f1^2*f2^2*|f3|"),
-        ];
-        for (text, expected) in cases {
-            let read = monomial(text).unwrap();
-            assert_eq!(read.to_string(), expected);
-            assert_eq!(monomial(expected), Some(read), "{text}");
-        }
-    }
-
-    #[test]
-    fn what_is_no_term_is_refused() {
-        for text in ["", "f4", "f1*", "f1^0", "f1^-1", "f1^10", "f1^255*f1^255", "|f1|*|f2|", "f1+f2", "2*f1", "|f1"] {
-            assert_eq!(monomial(text), None, "{text}");
-        }
-    }
 }

@@ -244,6 +244,11 @@ fn error_model_and_pair_relation() {
             r#"[model], error_model: found term = "f1+f2", expected a product of powers of f1, f2, f3 and at most one of |f1|, |f2|, |f3|, of degree 9 at most, such as f1*f2, f2*|f2|, f1^3 or 1"#,
         ),
         (
+            r#""kozlov-2017""#,
+            r#"[{ axis = 1, term = "f1^10" }]"#,
+            r#"[model], error_model: found term = "f1^10", expected a product of powers of f1, f2, f3 and at most one of |f1|, |f2|, |f3|, of degree 9 at most, such as f1*f2, f2*|f2|, f1^3 or 1"#,
+        ),
+        (
             r#""common""#,
             r#""same""#,
             r#"[model], pair_relation: found "same", expected "common", "opposite" or "free""#,
