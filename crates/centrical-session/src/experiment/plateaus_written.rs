@@ -7,7 +7,8 @@ use centrical_table::{parquet_bytes, write_whole};
 use super::plateaus::{Further, PlateauRow, is_small};
 use crate::error::Error;
 
-/// Writes a table of plateaus, every number to its last digit; the file appears whole or not at all.
+/// Writes a table of plateaus, every number to its last digit; the file appears whole or not at all. Rows have uncertainties of speeds, on an arm,
+/// or bends, at rest; where some have the first, no bend is written.
 ///
 /// # Errors
 /// If the file can not be written.

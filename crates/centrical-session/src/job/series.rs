@@ -8,7 +8,6 @@ mod workers;
 use std::collections::{BTreeSet, HashSet};
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::sync::Mutex;
 
 use centrical::{OnProgress, Stopped};
 use centrical_table::{Outputs, claim_folder};
@@ -16,6 +15,7 @@ use centrical_table::{Outputs, claim_folder};
 use self::ledger::Ledger;
 pub use self::ledger::last_rows;
 pub use self::one::SeriesRequest;
+use self::one::Writing;
 use self::table::write_tables;
 use self::workers::Workers;
 use crate::document::SeriesSummary;
@@ -55,7 +55,7 @@ pub fn calibrate_series(
         }
     }
     let known = sessions.len() - due.len();
-    Workers { request, store: &store, progress, writing: Mutex::default() }.run(&due, &mut ledger)?;
+    Workers { request, store: &store, progress, writing: Writing::default() }.run(&due, &mut ledger)?;
     let summary = write_tables(request, &store, &ledger, &sessions)?;
     Ok(SeriesSummary { known, ..summary })
 }

@@ -102,9 +102,8 @@ pub(crate) fn of_terms(terms: &[TermSummary], is_parameter: impl Fn(&str) -> boo
     let mut names = HashSet::new();
     terms.iter().find_map(|term| {
         let TermSummary { name, axis, powers, sign_of } = term;
-        let is_axis = |axis: &usize| (1..=3).contains(axis);
-        if !is_axis(axis) || !sign_of.iter().all(is_axis) {
-            return Some(("term_axes", format!("newtonometer {axis} of {name}"), "1 to 3".to_owned()));
+        if let Some(other) = [axis].into_iter().chain(sign_of).find(|axis| !(1..=3).contains(*axis)) {
+            return Some(("term_axes", format!("newtonometer {other} of {name}"), "1 to 3".to_owned()));
         }
         let monomial = Monomial { powers: *powers, sign_of: sign_of.map(|axis| axis - 1) };
         let known = ErrorModel::names(axis - 1, monomial);

@@ -62,10 +62,13 @@ impl MeasurementModel {
         self.carried_to(Self::new(experiment, self.error_model.clone(), &self.extensions))
     }
 
-    /// The same experiment, extensions and priors with another error model. A prior on a coefficient that it lacks falls away.
-    #[must_use]
-    pub(crate) fn with_error_model(&self, error_model: ErrorModel) -> Self {
-        self.carried_to(Self::new(self.experiment.clone(), error_model, &self.extensions))
+    /// The same experiment, extensions and priors with another error model. A prior about zero on a coefficient that it lacks falls away; `None`
+    /// where such a prior is about another value, which zero contradicts: the chi^2 of both would not be of the same data.
+    pub(crate) fn with_error_model(&self, error_model: ErrorModel) -> Option<Self> {
+        let other = Self::new(self.experiment.clone(), error_model, &self.extensions);
+        let is_kept = |prior: &Prior| other.parameters.find(&self.parameters[prior.parameter].name).is_some();
+        let is_same = self.priors.iter().all(|prior| prior.mean == 0.0 || is_kept(prior));
+        is_same.then(|| self.carried_to(other))
     }
 
     /// The model with what the laboratory states of the quantities that it takes as exact.

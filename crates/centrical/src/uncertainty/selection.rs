@@ -102,7 +102,7 @@ fn candidates_of(model: &MeasurementModel) -> Vec<Candidate> {
     ];
     let mut candidates: Vec<Candidate> = Vec::new();
     for (name, error_model) in parts {
-        let model = model.with_error_model(error_model);
+        let Some(model) = model.with_error_model(error_model) else { continue };
         let names = |m: &MeasurementModel| m.parameters().iter().map(|p| p.name.clone()).collect::<Vec<_>>();
         if candidates.iter().all(|c| names(&c.model) != names(&model)) {
             candidates.push(Candidate { name: name.to_owned(), rivals: Vec::new(), model });

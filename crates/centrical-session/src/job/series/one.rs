@@ -1,8 +1,9 @@
 //! What is asked of a series, and one session of it: whatever becomes of it is a row.
 
+use std::collections::HashMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use centrical::OnProgress;
 use centrical_table::TableFormat;
@@ -65,11 +66,22 @@ pub(super) struct Done {
     pub files: Vec<(std::path::PathBuf, String)>,
 }
 
-/// Calibrates a session, and writes the reduced one while no other thread is `writing`; nothing if the caller stopped it. A fault of the program inside one session is a failure of that session.
+/// The keys of reduced sessions, each held while such a session is written: sessions of equal files have one folder.
+#[derive(Default)]
+pub(super) struct Writing(Mutex<HashMap<String, Arc<Mutex<()>>>>);
+
+impl Writing {
+    fn of_key(&self, key: &str) -> Arc<Mutex<()>> {
+        let mut keys = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        keys.entry(key.to_owned()).or_default().clone()
+    }
+}
+
+/// Calibrates a session, and writes the reduced one while no other thread writes one of its key; nothing if the caller stopped it. A fault of the program inside one session is a failure of that session.
 pub(super) fn calibrated(
     path: &Path,
     request: &SeriesRequest,
-    writing: &Mutex<()>,
+    writing: &Writing,
     progress: OnProgress,
 ) -> Option<Done> {
     let failed =
@@ -85,12 +97,7 @@ pub(super) fn calibrated(
     }
 }
 
-fn try_calibrate(
-    path: &Path,
-    request: &SeriesRequest,
-    writing: &Mutex<()>,
-    progress: OnProgress,
-) -> Result<Done, Error> {
+fn try_calibrate(path: &Path, request: &SeriesRequest, writing: &Writing, progress: OnProgress) -> Result<Done, Error> {
     let session = Session::read(path)?;
     let (session, reduced) = reduce(&session, progress)?;
     let result: CalibrationResult = calibrate_reduced(&session, &reduced, request.method, progress)?;
@@ -99,8 +106,8 @@ fn try_calibrate(
     if request.reduced {
         let exact = (request.method == Method::Exact).then_some(&result);
         let folder = request.out.join("reduced").join(&row.key);
-        // Sessions of equal files have one folder.
-        let _one = writing.lock().unwrap_or_else(PoisonError::into_inner);
+        let of_key = writing.of_key(&row.key);
+        let _one = of_key.lock().unwrap_or_else(PoisonError::into_inner);
         write_reduced(&session, &reduced, exact, TableFormat::Csv, &folder, progress)?;
     }
     let hashes = result.inputs.into_iter().map(|input| input.sha256);

@@ -2,7 +2,6 @@
 
 use std::ops::ControlFlow;
 use std::path::Path;
-use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
 use std::time::{Duration, Instant};
@@ -12,7 +11,7 @@ use centrical::{OnProgress, Stopped, unwatched};
 use rayon::ThreadPoolBuilder;
 
 use super::ledger::Ledger;
-use super::one::{Done, SeriesRequest, calibrated};
+use super::one::{Done, SeriesRequest, Writing, calibrated};
 use crate::error::Error;
 use crate::store::Store;
 
@@ -28,8 +27,8 @@ pub(super) struct Workers<'a> {
     pub request: &'a SeriesRequest,
     pub store: &'a Store,
     pub progress: OnProgress<'a, usize>,
-    /// Held by the thread that writes a reduced session.
-    pub writing: Mutex<()>,
+    /// The reduced sessions that are written.
+    pub writing: Writing,
 }
 
 impl Workers<'_> {

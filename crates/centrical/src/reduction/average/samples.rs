@@ -129,22 +129,25 @@ impl<'a> Samples<'a> {
         Vector3::from_fn(|axis, _| cut * MAD * median(axis) + self.digit[axis])
     }
 
-    /// The samples on both sides of a fit whose last terms have these coefficients, on an axis: those beyond the limit among `spikes`, the others by
-    /// the shown ones.
-    pub fn sides(&self, coefficients: &[Vector3<f64>], axis: usize, limit: f64, spikes: &[usize]) -> [Side; 2] {
-        let times: Vec<f64> = spikes.iter().map(|i| self.t[*i]).collect();
-        let readings = spikes.iter().map(|i| self.f_z[axis][*i]).collect();
-        let spikes = residuals(&self.window.shape.columns(&times), readings, coefficients, axis);
-        let shown = self.shown.residuals(coefficients, axis);
-        let each = self.len() as f64 / shown.len() as f64;
-        [-1.0, 1.0].map(|sign| {
-            let beyond = |of: &[f64], least: f64| of.iter().filter(|residual| sign * **residual > least).count() as f64;
-            Side {
-                all: each * beyond(&shown, 0.0),
-                beyond_half: each * beyond(&shown, 0.5 * limit),
-                beyond: beyond(&spikes, limit),
+    /// The samples on both sides of a fit with these coefficients and limits, on each axis: those that are usable, cell by cell.
+    pub fn sides(
+        &self,
+        coefficients: &[Vector3<f64>],
+        limits: &Vector3<f64>,
+        is_usable: impl Fn(usize) -> bool,
+    ) -> [[Side; 2]; 3] {
+        let mut sides = [[Side::default(); 2]; 3];
+        for cell in self.cells() {
+            let columns = self.window.shape.columns(&self.t[cell.clone()]);
+            let usable: Vec<bool> = cell.clone().map(&is_usable).collect();
+            for (axis, sides) in sides.iter_mut().enumerate() {
+                let residuals = residuals(&columns, self.f_z[axis][cell.clone()].to_vec(), coefficients, axis);
+                for (residual, _) in residuals.into_iter().zip(&usable).filter(|(_, usable)| **usable) {
+                    sides[usize::from(residual > 0.0)].count(residual.abs() / limits[axis]);
+                }
             }
-        })
+        }
+        sides
     }
 
     /// The rejected samples by kind: `rejected` of the recorded ones, among them the stuck and the unreadable. Samples

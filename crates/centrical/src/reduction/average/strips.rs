@@ -135,15 +135,12 @@ impl<'a> Strips<'a> {
 
     /// Whether the spikes of a fit with these coefficients are the tail of the noise on some axis. From then on they are good.
     pub fn keeps_tails(&mut self, coefficients: &[Vector3<f64>]) -> bool {
-        let (spikes, limits) = (self.spikes(), self.samples.limits(coefficients));
-        if spikes.is_empty() {
+        if self.bad().filter(|i| self.is_usable(*i)).take(2).count() < 2 {
             return false;
         }
-        let wider = |axis: usize| {
-            let sides = self.samples.sides(coefficients, axis, limits[axis], &spikes);
-            sides.into_iter().filter_map(widened).fold(1.0, f64::max)
-        };
-        self.wider = Vector3::from_fn(|axis, _| wider(axis));
+        let limits = self.samples.limits(coefficients);
+        let sides = self.samples.sides(coefficients, &limits, |i| self.is_usable(i));
+        self.wider = Vector3::from(sides.map(|sides| sides.into_iter().filter_map(widened).fold(1.0, f64::max)));
         self.wider.max() > 1.0
     }
 
@@ -195,7 +192,7 @@ impl<'a> Strips<'a> {
     /// Numbers of stuck samples, and of unreadable ones among the others.
     pub fn stuck_and_unreadable(&self) -> (usize, usize) {
         let stuck = self.bad().filter(|i| self.is_stuck(*i)).count();
-        (stuck, self.bad().count() - stuck - self.spikes().len())
+        (stuck, self.bad().filter(|i| !self.is_stuck(*i) && !self.is_usable(*i)).count())
     }
 
     /// The bad samples.
@@ -203,10 +200,9 @@ impl<'a> Strips<'a> {
         self.part().iter().flat_map(|strip| strip.bad.iter().map(|i| strip.range.start + i))
     }
 
-    /// Those that are readable and not stuck.
-    fn spikes(&self) -> Vec<usize> {
-        let is_readable = |i: &usize| self.samples.f_z.iter().all(|f| f[*i].is_finite());
-        self.bad().filter(|i| !self.is_stuck(*i)).filter(is_readable).collect()
+    /// Whether a sample is readable on all axes and not stuck.
+    fn is_usable(&self, sample: usize) -> bool {
+        self.samples.f_z.iter().all(|f| f[sample].is_finite()) && !self.is_stuck(sample)
     }
 
     fn is_stuck(&self, sample: usize) -> bool {

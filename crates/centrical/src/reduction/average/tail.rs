@@ -1,12 +1,12 @@
 //! The tail of the noise, which is part of its mean, beside spikes, which are not.
 //!
 //! Vibration that a sensor squares has readings far off on one side alone. Limits that are symmetric cut that tail, and the mean of the other
-//! readings is off by more than its uncertainty. A tail falls off at least as an exponential does: of `n` readings on one side of the
+//! readings is off by more than its uncertainty. A tail falls off about as an exponential does: of `n` readings on one side of the
 //! fit, `m` beyond half the limit, no more than `m^2/n` are expected beyond the limit (the survival of a log-concave law is
 //! log-concave). Spikes are more than that. Beside few spikes the limit grows little, since it follows from `n` and `m`: they stay out.
 
 /// Readings on one side of a fit.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(super) struct Side {
     /// Number of all of them.
     pub all: f64,
@@ -16,14 +16,23 @@ pub(super) struct Side {
     pub beyond: f64,
 }
 
-/// Of the readings of a tail beyond half the limit, no more than this part lies beyond the limit: a third of a squared normal value.
+impl Side {
+    /// Counts a reading that far from the fit, in limits.
+    pub fn count(&mut self, distance: f64) {
+        self.all += 1.0;
+        self.beyond_half += f64::from(u8::from(distance > 0.5));
+        self.beyond += f64::from(u8::from(distance > 1.0));
+    }
+}
+
+/// Of the readings of a tail beyond half the limit, no more than this part lies beyond the limit. Of a squared normal value it is a third.
 const FARTHEST: f64 = 0.5;
 
 /// A squared normal value falls off somewhat slower than an exponential, and the numbers of a short plateau scatter.
 const SLOWER: f64 = 3.0;
 
 /// The limit that keeps a tail, over the limit; `None` where the readings beyond the limit are not a tail. One alone is not: noise of the normal law has
-/// one in some plateaus, which moves no mean. Fewer than one in twenty tails has a reading beyond the new limit.
+/// one in some plateaus, which moves no mean. Fewer than one in twenty exponential tails has a reading beyond the new limit.
 pub(super) fn widened(side: Side) -> Option<f64> {
     let Side { all, beyond_half, beyond } = side;
     let is_tail = beyond <= FARTHEST * beyond_half && beyond <= SLOWER * beyond_half * beyond_half / all;
@@ -46,10 +55,10 @@ mod tests {
             let good: Vec<f64> = readings.iter().copied().filter(|reading| (reading - mean).abs() <= limit).collect();
             mean = good.iter().sum::<f64>() / good.len() as f64;
         }
-        let sides = [-1.0, 1.0].map(|sign| {
-            let beyond = |least: f64| readings.iter().filter(|reading| sign * (*reading - mean) > least).count() as f64;
-            Side { all: beyond(0.0), beyond_half: beyond(0.5 * limit), beyond: beyond(limit) }
-        });
+        let mut sides = [Side::default(); 2];
+        for f in readings {
+            sides[usize::from(*f > mean)].count((f - mean).abs() / limit);
+        }
         sides.into_iter().filter_map(widened).fold(1.0, f64::max)
     }
 
