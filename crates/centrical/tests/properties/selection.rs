@@ -98,6 +98,19 @@ fn a_stated_extension_is_in_the_model_as_stated() {
     assert_eq!((recommended.name.as_str(), recommended.unknowns), ("as stated", model.parameters().len()));
 }
 
+/// A part of the model that leaves out a coefficient which a prior puts elsewhere than at zero is no candidate: its chi^2 would lack that prior.
+#[test]
+fn no_part_contradicts_a_prior() {
+    let (model, mut random) = (source_model(), Random::new(6));
+    let data = session(&model, &truth(&model, 1.0, &mut random), &mut random);
+    for (mean, parts) in [(0.0, 3), (1e-6, 1)] {
+        let model = model.clone().with_prior_about("G1_11", mean, 1e-6).unwrap();
+        let selection = ModelSelection::beside(&model, &data, &unwatched).unwrap();
+        let is_part = |name: &str| name.starts_with("linear");
+        assert_eq!(selection.candidates.iter().filter(|c| is_part(&c.name)).count(), parts);
+    }
+}
+
 /// A rival whose unknowns the data do not determine fits as well as the model without it, and is not a candidate: a lateral shift of a seat
 /// is what the shifts of the unit follow.
 #[test]
