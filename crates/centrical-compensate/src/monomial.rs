@@ -177,39 +177,3 @@ fn power_by_squaring(mut x: f64, mut n: u8) -> f64 {
     }
     power
 }
-
-#[cfg(test)]
-mod tests {
-    use std::string::ToString as _;
-
-    use super::Monomial;
-
-    #[test]
-    fn terms_are_read_and_written_in_one_way() {
-        let cases = [
-            ("1", "1"),
-            ("f1", "f1"),
-            (" f2 * f1 ", "f1*f2"),
-            ("|f2|*f2", "f2*|f2|"),
-            ("f3^2*f3", "f3^3"),
-            ("|f1|^2", "f1^2"),
-            ("|f1|^3", "f1^2*|f1|"),
-            ("|f3|", "|f3|"),
-            ("sgn(f2)", "sgn(f2)"),
-            ("sgn(f1)*f1", "|f1|"),
-            ("f1*f1*f2^2*|f3|", "f1^2*f2^2*|f3|"),
-        ];
-        for (text, expected) in cases {
-            let read = Monomial::parse(text).unwrap();
-            assert_eq!(read.to_string(), expected);
-            assert_eq!(Monomial::parse(expected), Some(read), "{text}");
-        }
-    }
-
-    #[test]
-    fn what_is_no_term_is_refused() {
-        for text in ["", "f4", "f1*", "f1^0", "f1^-1", "f1^255*f1^255", "|f1|*|f2|", "f1+f2", "2*f1", "|f1"] {
-            assert_eq!(Monomial::parse(text), None, "{text}");
-        }
-    }
-}

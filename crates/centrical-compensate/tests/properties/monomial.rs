@@ -44,3 +44,32 @@ fn text_lists_components_in_order() {
     assert_eq!(shown([1, 2, 0], Some(1)), "f1*f2*|f2|");
     assert_eq!(shown([3, 0, 1], None), "f1^3*f3");
 }
+
+#[test]
+fn terms_are_read_and_written_in_one_way() {
+    let cases = [
+        ("1", "1"),
+        ("f1", "f1"),
+        (" f2 * f1 ", "f1*f2"),
+        ("|f2|*f2", "f2*|f2|"),
+        ("f3^2*f3", "f3^3"),
+        ("|f1|^2", "f1^2"),
+        ("|f1|^3", "f1^2*|f1|"),
+        ("|f3|", "|f3|"),
+        ("sgn(f2)", "sgn(f2)"),
+        ("sgn(f1)*f1", "|f1|"),
+        ("f1*f1*f2^2*|f3|", "f1^2*f2^2*|f3|"),
+    ];
+    for (text, expected) in cases {
+        let read = Monomial::parse(text).unwrap();
+        assert_eq!(read.to_string(), expected);
+        assert_eq!(Monomial::parse(expected), Some(read), "{text}");
+    }
+}
+
+#[test]
+fn what_is_no_term_is_refused() {
+    for text in ["", "f4", "f1*", "f1^0", "f1^-1", "f1^255*f1^255", "|f1|*|f2|", "f1+f2", "2*f1", "|f1"] {
+        assert_eq!(Monomial::parse(text), None, "{text}");
+    }
+}
