@@ -2,10 +2,12 @@
 
 use std::time::Duration;
 
+use centrical_report::Language;
 use centrical_session::{
     ColumnName, Dimension, NotThatQuantity, PlanRequest, Quantity, TableFormat, TumbleRequest, WatchRequest,
     available_time,
 };
+use clap::ValueEnum;
 
 /// A column: a number from 1, or a name.
 pub fn column_name(text: &str) -> Result<ColumnName, String> {
@@ -13,6 +15,24 @@ pub fn column_name(text: &str) -> Result<ColumnName, String> {
         Ok(0) => Err("found 0, expected a number from 1 or a name".to_owned()),
         Ok(number) => Ok(ColumnName::Number(number)),
         Err(_) => Ok(ColumnName::Name(text.to_owned())),
+    }
+}
+
+/// A language by its code.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub enum LanguageName {
+    /// English
+    En,
+    /// Russian
+    Ru,
+}
+
+impl From<LanguageName> for Language {
+    fn from(name: LanguageName) -> Self {
+        match name {
+            LanguageName::En => Self::English,
+            LanguageName::Ru => Self::Russian,
+        }
     }
 }
 

@@ -3,13 +3,12 @@
 use std::path::{Path, PathBuf};
 
 use centrical_report::{
-    DocumentRequest, Emphasis, Language, Screen, UnitStatement, read_issuer, result_text, unit_text, verdict_text,
+    DocumentRequest, Emphasis, Screen, UnitStatement, read_issuer, result_text, unit_text, verdict_text,
     write_all_documents, write_documents,
 };
 use centrical_session::{Axes, CalibrationResult, DocumentsReport, Error, Place};
-use clap::ValueEnum;
 
-use crate::given::acceleration;
+use crate::given::{LanguageName, acceleration};
 use crate::output::{Outcome, Printing, remark};
 
 /// Write the documents of a calibration from its result.json.
@@ -107,24 +106,6 @@ impl Documents {
             remark(&unit_text(unit));
         }
         Ok(Outcome::acceptable(objections.is_empty() && is_within_limits(unit.as_ref())))
-    }
-}
-
-/// A language by its code.
-#[derive(Debug, Clone, Copy, ValueEnum)]
-pub enum LanguageName {
-    /// English
-    En,
-    /// Russian
-    Ru,
-}
-
-impl From<LanguageName> for Language {
-    fn from(name: LanguageName) -> Self {
-        match name {
-            LanguageName::En => Self::English,
-            LanguageName::Ru => Self::Russian,
-        }
     }
 }
 
