@@ -244,8 +244,8 @@ impl Truth {
     /// Reads the truth of a session that follows `plan`. `seed` is the session's.
     ///
     /// # Errors
-    /// If the file can not be read or does not follow the form, a quantity is not of its dimension, a setting makes no
-    /// sense, or a parameter is not one of the plan's nor of an extension.
+    /// If the file cannot be read or does not follow the form. If a quantity has another dimension, a setting is out of range, or a
+    /// parameter belongs neither to the plan nor to an extension.
     pub fn read(file: &Path, plan: &Session, seed: u64) -> Result<Self, Error> {
         let text = read_settings(file, "a truth file")?;
         let form: TruthForm = from_toml(file, &text)?;

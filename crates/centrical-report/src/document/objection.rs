@@ -50,7 +50,7 @@ pub fn objection(objection: &ResultObjection, language: Language) -> String {
     }
 }
 
-/// That a result must not be used as it stands, and why.
+/// The warning that a result must not be used, with the reasons.
 pub(super) fn refusal(objections: &[ResultObjection], language: Language) -> Vec<Block> {
     let messages = language.messages();
     let reasons = objections.iter().map(|reason| objection(reason, language)).collect();

@@ -3,7 +3,7 @@
 use centrical_session::{CalibrationResult, ModelSummary, OutputSummary, ParameterEstimate, SessionSummary, customary};
 
 use super::content::{Align, Block, Column, Row, Table, TableKind};
-use crate::evaluation::{BudgetOf, Expanded, budget_of, expanded, symbol};
+use crate::evaluation::{BudgetOf, Expanded, expanded, symbol};
 use crate::language::Language;
 
 /// What a source leaves is not shown below this part of the combined uncertainty.
@@ -98,15 +98,16 @@ pub(super) fn budget(result: &CalibrationResult, language: Language) -> Option<T
     let row = |parameter: &ParameterEstimate| {
         let (factor, unit) = customary(&parameter.unit, parameter.group);
         let shown = |value: Option<f64>| value.map_or(String::new(), |value| language.significant(value * factor, 2));
-        let BudgetOf { sources, combined, degrees_of_freedom } = budget_of(result, &parameter.name)?;
+        let budget = BudgetOf::parameter(result, &parameter.name)?;
+        let combined = budget.combined();
         let negligible = NEGLIGIBLE * combined.unwrap_or(0.0);
         let of_source = |value: Option<f64>| {
             if value.is_some_and(|value| value < negligible) { "–".to_owned() } else { shown(value) }
         };
         let mut cells = vec![symbol(&parameter.name), language.unit(unit)];
-        cells.extend(sources.into_iter().map(of_source));
+        cells.extend(budget.sources().map(of_source));
         if combined.is_some() {
-            let degrees = degrees_of_freedom.map_or("∞".to_owned(), |nu| language.fixed(nu.floor(), 0));
+            let degrees = budget.degrees_of_freedom().map_or("∞".to_owned(), |nu| language.fixed(nu.floor(), 0));
             cells.extend([shown(combined), degrees]);
         } else {
             cells.extend([messages.not_determined.to_owned(), String::new()]);

@@ -1,4 +1,4 @@
-//! A watch, as it was and as it stands: uncertainties after each plateau, readings of the last minutes, measured speeds.
+//! Plots of a watched session: uncertainties after each plateau, readings of the last minutes, measured speeds.
 
 use centrical::Group;
 use centrical_session::{GroupProgress, HistoryEntry, LiveReport, LiveSpeed};

@@ -209,10 +209,12 @@ impl Further {
     /// What these plateaus have.
     pub fn of(plateaus: &[PlateauRow]) -> Self {
         let has = |what: fn(&PlateauRow) -> bool| plateaus.iter().any(what);
-        match () {
-            () if has(|p| p.speed_uncertainty.is_some()) => Self::Speeds,
-            () if has(|p| p.bend_z.is_some()) => Self::Bends,
-            () => Self::Nothing,
+        if has(|p| p.speed_uncertainty.is_some()) {
+            Self::Speeds
+        } else if has(|p| p.bend_z.is_some()) {
+            Self::Bends
+        } else {
+            Self::Nothing
         }
     }
 

@@ -73,7 +73,7 @@ pub struct Session {
 /// The files of one mounting.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct MountingFiles {
-    /// The record, or three, one for each newtonometer; empty if there is none.
+    /// One record, or three, one for each newtonometer; none for a mounting that came averaged.
     pub records: Vec<PathBuf>,
     /// The telemetry.
     pub telemetry: Option<PathBuf>,

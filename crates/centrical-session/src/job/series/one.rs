@@ -77,7 +77,8 @@ impl Writing {
     }
 }
 
-/// Calibrates a session, and writes the reduced one while no other thread writes one of its key; nothing if the caller stopped it. A fault of the program inside one session is a failure of that session.
+/// Calibrates a session, and writes the reduced one while no other thread writes one of its key; nothing if the caller stopped it. A fault of
+/// the program inside one session is a failure of that session.
 pub(super) fn calibrated(
     path: &Path,
     request: &SeriesRequest,

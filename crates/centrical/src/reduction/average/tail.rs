@@ -70,7 +70,7 @@ mod tests {
             let squares: Vec<f64> = normal.iter().map(|value| 1.0 - value * value).collect();
             let exponential: Vec<f64> = normal.iter().map(|_| random.normal().hypot(random.normal()).powi(2)).collect();
             for tail in [&squares, &exponential] {
-                // All but a few: the means of what is left out and of all differ by less than a third of their uncertainty.
+                // Eight robust deviations keep all but a few of either.
                 let kept = wider(tail) * cut(n);
                 assert!(kept > 8.0, "{kept} of {n}");
             }
