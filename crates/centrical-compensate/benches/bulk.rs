@@ -29,7 +29,7 @@ fn kozlov() -> Vec<Term> {
 /// The same and a product of components: no fast form.
 fn with_products() -> Vec<Term> {
     let mut terms = kozlov();
-    terms.push(Term { axis: 0, monomial: Monomial::product(0, 1), coefficient: 1e-6 });
+    terms.push(Term { axis: 0, monomial: Monomial::product(&[0, 1]), coefficient: 1e-6 });
     terms
 }
 

@@ -36,14 +36,17 @@ impl Monomial {
         Self { sign_of: Some(axis), ..Self::power(axis, 2) }
     }
 
-    /// `f_a f_b`.
+    /// The product of components, each as often as it is listed: `f1^2 f3` of `[0, 0, 2]`.
     ///
     /// # Panics
-    /// If `a` or `b` is not 0, 1 or 2.
-    pub const fn product(a: usize, b: usize) -> Self {
+    /// If a component is not 0, 1 or 2.
+    pub const fn product(components: &[usize]) -> Self {
         let mut powers = [0; 3];
-        powers[a] += 1;
-        powers[b] += 1;
+        let mut n = 0;
+        while n < components.len() {
+            powers[components[n]] += 1;
+            n += 1;
+        }
         Self { powers, sign_of: None }
     }
 

@@ -16,7 +16,7 @@ fn kozlov() -> Vec<Term> {
 /// A product of components and a kink: no fast form.
 fn others() -> Vec<Term> {
     let mut terms = kozlov();
-    terms.push(Term { axis: 0, monomial: Monomial::product(0, 1), coefficient: 1e-6 });
+    terms.push(Term { axis: 0, monomial: Monomial::product(&[0, 1]), coefficient: 1e-6 });
     let kink = Monomial { sign_of: Some(1), ..Monomial::power(1, 1) };
     terms.push(Term { axis: 1, monomial: kink, coefficient: 3e-4 });
     terms

@@ -38,7 +38,7 @@ pub fn everything() -> impl Strategy<Value = Model> {
         for i in 0..3 {
             let [j, k] = [(i + 1) % 3, (i + 2) % 3];
             let mut add = |monomial, coefficient| model.terms.push(Term { axis: i, monomial, coefficient });
-            add(Monomial::product(j, k), 1e-5 / G * u[3 * i]);
+            add(Monomial::product(&[j, k]), 1e-5 / G * u[3 * i]);
             add(Monomial::odd_square(i), 1e-5 / G * u[3 * i + 1]);
             add(Monomial { sign_of: Some(j), ..Monomial::power(j, 1) }, 2e-3 * u[3 * i + 2]);
         }

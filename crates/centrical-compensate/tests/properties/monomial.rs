@@ -8,7 +8,7 @@ fn gradient_equals_differences() {
         Monomial::power(0, 1),
         Monomial::power(2, 3),
         Monomial::power(1, 5),
-        Monomial::product(0, 2),
+        Monomial::product(&[0, 2]),
         Monomial::odd_square(0),
         Monomial::odd_square(1),
         Monomial { powers: [1, 2, 1], sign_of: Some(0) },

@@ -131,6 +131,8 @@ pub(super) fn follows(follows: &Follows) -> &'static str {
 pub(super) fn rival(rival: Rival) -> &'static str {
     match rival {
         Rival::Terms(Extra::CrossProducts) => "products of two components of the force",
+        Rival::Terms(Extra::CrossCubes) => "cubes of the other components of the force",
+        Rival::Terms(Extra::CubicProducts) => "products of three components of the force",
         Rival::Terms(Extra::OddQuadratic) => "odd square of the force",
         Rival::Terms(Extra::Asymmetry) => "scale that differs with the sign of the force",
         Rival::Terms(Extra::FourthPower) => "fourth power of the force",

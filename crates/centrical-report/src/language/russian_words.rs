@@ -129,6 +129,8 @@ pub(super) fn follows(follows: &Follows) -> &'static str {
 pub(super) fn rival(rival: Rival) -> &'static str {
     match rival {
         Rival::Terms(Extra::CrossProducts) => "произведения двух составляющих силы",
+        Rival::Terms(Extra::CrossCubes) => "кубы других составляющих силы",
+        Rival::Terms(Extra::CubicProducts) => "произведения трёх составляющих силы",
         Rival::Terms(Extra::OddQuadratic) => "нечётный квадрат силы",
         Rival::Terms(Extra::Asymmetry) => "масштаб, зависящий от знака силы",
         Rival::Terms(Extra::FourthPower) => "четвёртая степень силы",

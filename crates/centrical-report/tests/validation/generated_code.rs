@@ -41,7 +41,7 @@ fn with_more_terms() -> Vec<NamedTerm> {
         let name = centrical::Term::new(axis, monomial).name;
         terms.push(NamedTerm { name, term: Term { axis, monomial, coefficient } });
     };
-    add(0, Monomial::product(0, 1), 1e-5 / G);
+    add(0, Monomial::product(&[0, 1]), 1e-5 / G);
     add(1, Monomial::odd_square(1), -1e-5 / G);
     add(2, Monomial { sign_of: Some(2), ..Monomial::power(2, 1) }, 1e-3);
     add(2, Monomial::power(0, 4), 1e-10 / G.powi(3));

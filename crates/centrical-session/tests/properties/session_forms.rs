@@ -139,7 +139,7 @@ fn terms_beside_the_preset() {
     let terms = with("\"kozlov-2017\"", list).error_model.terms;
     assert_eq!(terms[..21], ErrorModel::kozlov_2017().terms);
     let own: Vec<_> = terms[21..].iter().map(|t| (t.name.as_str(), t.axis, t.monomial, t.group)).collect();
-    let cross = ("K_1[f1*f2]", 0, Monomial::product(0, 1), Group::CrossCoupling);
+    let cross = ("K_1[f1*f2]", 0, Monomial::product(&[0, 1]), Group::CrossCoupling);
     assert_eq!(own, [cross, ("K_2[f2*|f2|]", 1, Monomial::odd_square(1), Group::Quadratic)]);
     // What the preset has is named as there.
     let known = with("\"kozlov-2017\"", r#"["G0_11", { axis = 3, term = "f1" }, { axis = 2, term = "1" }]"#);

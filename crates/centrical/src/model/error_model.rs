@@ -40,6 +40,12 @@ pub enum Extra {
     /// the products of two of the three components, 9 coefficients `K_1[f1*f2]`, ... Which of the other two axes is
     /// the pendulous axis `p` and which the output axis `o` is the sensor's affair and changes no product.
     CrossProducts,
+    /// The cubes of the two other components, `f_j^3`, `j != i`: 6 coefficients `K_1[f2^3]`, ...
+    CrossCubes,
+    /// The products of three components that are no cubes: `f_j^2 f_k`, `j != k`, and `f_1 f_2 f_3`, 21 coefficients
+    /// `K_1[f1^2*f2]`, ... With `kozlov-2017`, the cross products and the cross cubes, the power series to the third degree is
+    /// complete.
+    CubicProducts,
     /// The even quadratic terms `K_ii f_i^2` of IEEE Std 1293: 3 coefficients `G1_11`, ..., which the source's model has and a coarser one lacks.
     OwnSquares,
     /// The odd quadratic terms `K_oq f_i |f_i|` of IEEE Std 1293: 3 coefficients `K_1[f1*|f1|]`, ...
@@ -56,8 +62,10 @@ pub enum Extra {
 
 impl Extra {
     /// Every extra with its name as written in sessions.
-    pub const NAMED: [(&'static str, Self); 7] = [
+    pub const NAMED: [(&'static str, Self); 9] = [
         ("cross-products", Self::CrossProducts),
+        ("cross-cubes", Self::CrossCubes),
+        ("cubic-products", Self::CubicProducts),
         ("own-squares", Self::OwnSquares),
         ("odd-quadratic", Self::OddQuadratic),
         ("asymmetry", Self::Asymmetry),
@@ -78,10 +86,16 @@ impl Extra {
 
     /// Its terms, newtonometer by newtonometer.
     pub fn terms(self) -> Vec<Term> {
+        let others = |axis: usize| [(axis + 1) % 3, (axis + 2) % 3];
         let monomials = |axis: usize| match self {
             Self::CrossProducts => {
-                let (p, o) = ((axis + 1) % 3, (axis + 2) % 3);
-                vec![Monomial::product(axis, p), Monomial::product(axis, o), Monomial::product(p, o)]
+                let [p, o] = others(axis);
+                vec![Monomial::product(&[axis, p]), Monomial::product(&[axis, o]), Monomial::product(&[p, o])]
+            }
+            Self::CrossCubes => others(axis).map(|j| Monomial::power(j, 3)).to_vec(),
+            Self::CubicProducts => {
+                let with_square = (0..3).flat_map(|j| others(j).map(|k| Monomial::product(&[j, j, k])));
+                with_square.chain([Monomial::product(&[0, 1, 2])]).collect()
             }
             Self::OwnSquares => vec![Monomial::power(axis, 2)],
             Self::OddQuadratic => vec![Monomial::odd_square(axis)],

@@ -77,6 +77,8 @@ impl Rival {
     pub fn formula(self) -> &'static str {
         match self {
             Self::Terms(Extra::CrossProducts) => "f_j f_k, j < k",
+            Self::Terms(Extra::CrossCubes) => "f_j^3, j != i",
+            Self::Terms(Extra::CubicProducts) => "f_j^2 f_k, j != k; f_1 f_2 f_3",
             Self::Terms(Extra::OwnSquares) => "f_i^2",
             Self::Terms(Extra::OddQuadratic) => "f_i |f_i|",
             Self::Terms(Extra::Asymmetry) => "|f_i|",
@@ -135,7 +137,9 @@ impl Rival {
             Self::Terms(Extra::CrossProducts | Extra::OwnSquares | Extra::OddQuadratic | Extra::Asymmetry) => {
                 "IEEE Std 1293"
             }
-            Self::Terms(Extra::FourthPower | Extra::FifthPower | Extra::Jump) => "power series of the characteristic",
+            Self::Terms(
+                Extra::CrossCubes | Extra::CubicProducts | Extra::FourthPower | Extra::FifthPower | Extra::Jump,
+            ) => "power series of the characteristic",
             Self::Effect(extension) => match extension {
                 Extension::ElasticTurn(_) | Extension::PositionShift => "the source's abstract and section 3",
                 Extension::ArmStretch(_)

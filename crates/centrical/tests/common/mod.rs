@@ -41,7 +41,7 @@ pub fn everything(experiment: Experiment) -> MeasurementModel {
     let mut error_model = ErrorModel::kozlov_2017();
     for axis in 0..3 {
         for (name, monomial) in
-            [("cross", Monomial::product(axis, (axis + 1) % 3)), ("odd", Monomial::odd_square(axis))]
+            [("cross", Monomial::product(&[axis, (axis + 1) % 3])), ("odd", Monomial::odd_square(axis))]
         {
             error_model.terms.push(Term { name: format!("{name}_{axis}"), group: Group::HigherOrder, axis, monomial });
         }

@@ -15,7 +15,7 @@ fn with(extra: &[Term]) -> MeasurementModel {
 }
 
 fn cross() -> Term {
-    Term { name: "K_2[f1*f2]".to_owned(), group: Group::CrossCoupling, axis: 1, monomial: Monomial::product(0, 1) }
+    Term { name: "K_2[f1*f2]".to_owned(), group: Group::CrossCoupling, axis: 1, monomial: Monomial::product(&[0, 1]) }
 }
 
 /// A term of five standard uncertainties is kept at least 95 times in 100, an absent one rejected at least 95 times: by

@@ -176,11 +176,13 @@ fn arm_stretch_and_scales() {
 #[test]
 fn rivals() {
     let all = |name: &str| Rival::named(name).unwrap();
-    let table: [(&[&str], usize, usize, usize); 16] = [
+    let table: [(&[&str], usize, usize, usize); 18] = [
         (&["odd-quadratic"], 52, 52, 50),
         (&["asymmetry"], 52, 52, 50),
         (&["fourth-power"], 52, 52, 50),
         (&["cross-products"], 58, 58, 54),
+        (&["cross-cubes"], 55, 55, 53),
+        (&["cubic-products"], 70, 70, 66),
         (&["arm-turn-speed"], 52, 52, 50),
         (&["arm-turn-load"], 52, 52, 50),
         (&["arm-turn-speed", "arm-turn-load"], 55, 55, 53),
