@@ -35,6 +35,7 @@ pub(super) fn group(group: Group) -> &'static str {
         Group::ArmStretch => "Растяжение плеча",
         Group::RadiusScale => "Масштаб радиусов",
         Group::SpeedScale => "Масштаб скорости",
+        Group::EarthRate => "Вращение Земли",
         Group::Gravity => "Ошибка ускорения свободного падения",
         Group::ArmTurn => "Упругий поворот конца плеча",
         Group::SpinTurn => "Поворот прибора при вращении",
@@ -42,6 +43,7 @@ pub(super) fn group(group: Group) -> &'static str {
         Group::MountingShift => "Смещение в одной установке",
         Group::MountingTurn => "Поворот в одной установке",
         Group::MountingTilt => "Наклон оси в одной установке",
+        Group::AngleTilt => "Наклон оси при одном угле покоя",
         Group::MountingBias => "Смещение нуля в одной установке",
         Group::MountingScale => "Масштаб в одной установке",
         Group::Disturbance => "Возмущение показаний",
@@ -148,6 +150,7 @@ pub(super) fn rival(rival: Rival) -> &'static str {
             Extension::SeatStretch(Law::Load) => "растяжение плеча по местам с нагрузкой",
             Extension::RadiusScale => "общий масштаб радиусов",
             Extension::SpeedScale => "общий масштаб скоростей",
+            Extension::EarthRate => "вращение Земли: широта не задана",
             Extension::Gravity => "ускорение свободного падения отличается от заданного",
             Extension::ArmTurn(Law::Speed) => "поворот конца плеча с квадратом скорости",
             Extension::ArmTurn(Law::Load) => "поворот конца плеча с нагрузкой: нежёсткое плечо",
@@ -157,6 +160,7 @@ pub(super) fn rival(rival: Rival) -> &'static str {
             Extension::MountingShift => "собственное смещение в каждой установке",
             Extension::MountingTurn => "собственный поворот в каждой установке",
             Extension::MountingTilt => "наклон оси, различный по установкам",
+            Extension::AngleTilt => "наклон оси, различный по углам покоя, или угол, отличный от заданного",
             Extension::MountingBias => "смещение нуля, различное по установкам",
             Extension::MountingScale => "масштаб, различный по установкам",
             Extension::RestsBias => {
@@ -194,10 +198,11 @@ pub(super) fn rival(rival: Rival) -> &'static str {
 }
 
 /// Words in the formulas of rivals.
-const OF_FORMULAS: [(&str, &str); 15] = [
+const OF_FORMULAS: [(&str, &str); 16] = [
     ("by position", "по положениям"),
     ("by seat", "по посадочным местам"),
     ("by mounting", "по установкам"),
+    ("by angle of rest", "по углам покоя"),
     ("by switch-on of rests", "по включениям в покое"),
     ("by rest", "по положениям покоя"),
     ("while spinning", "при вращении"),
@@ -267,7 +272,7 @@ mod tests {
     use super::formula;
 
     /// Letters and functions of formulas.
-    const SYMBOLS: &str = "Omega delta kappa tau alpha theta rho Gamma sgn ln sum";
+    const SYMBOLS: &str = "Omega omega delta kappa tau alpha theta rho Gamma sgn ln sum";
 
     #[test]
     fn formulas_have_no_english_words() {

@@ -39,6 +39,9 @@ fn protection(effect: &RestsOn) -> String {
     if let Some(Rival::Effect(Extension::OneSpeed(_))) = effect.rival() {
         return "protect: measure the speeds (measured under [centrifuge])".to_owned();
     }
+    if let Some(Rival::Effect(Extension::EarthRate)) = effect.rival() {
+        return "protect: state latitude under [site]".to_owned();
+    }
     // A step of the reading has no inverse at no force.
     if let Some(Rival::Terms(Extra::Jump)) = effect.rival() {
         return format!("protect: state {bound} under [uncertainty]");

@@ -52,6 +52,13 @@ pub enum Effect {
         /// Index of the mounting.
         mounting: usize,
     },
+    /// Tilt of the rotation axis at one angle of rest [rad], about reference axis 1 or 2.
+    AngleTilt {
+        /// Reference axis, 0 or 1.
+        axis: usize,
+        /// Index of the first set point at rest at that angle.
+        first: usize,
+    },
     /// Tilt of a rest beyond what is stated of its attitude [rad], about reference axis 1 or 2.
     RestTilt {
         /// Reference axis, 0 or 1.
@@ -103,6 +110,8 @@ pub enum Effect {
         /// Index of the first set point with that speed.
         first: usize,
     },
+    /// Vertical component of the Earth's rotation, beside that of the stated latitude [rad/s].
+    EarthRate,
     /// Local gravity [m/s^2].
     Gravity,
     /// Latitude [rad].
@@ -242,7 +251,8 @@ impl Effect {
     /// Whether it acts otherwise at another speed, through more than the rate.
     pub(crate) fn changes_with_speed(self) -> bool {
         let is_disturbance = matches!(self, Self::Disturbance { .. } | Self::Monomial { .. });
-        self.is_elastic() || is_disturbance || matches!(self, Self::SpinTurn { .. } | Self::MountingTilt { .. })
+        let is_of_rest = matches!(self, Self::SpinTurn { .. } | Self::MountingTilt { .. } | Self::AngleTilt { .. });
+        self.is_elastic() || is_disturbance || is_of_rest
     }
 
     /// Whether it acts through the arm, its machine or its seats: not on a rest in a free attitude, whose own attitude is
@@ -261,6 +271,7 @@ impl Effect {
             | Self::SpinTurn { .. }
             | Self::MountingTurn { .. }
             | Self::MountingTilt { .. }
+            | Self::AngleTilt { .. }
             | Self::ArmStretch { .. }
             | Self::RadiusScale
             | Self::SeatPlace { .. }
@@ -269,6 +280,7 @@ impl Effect {
             | Self::Coordinate { .. }
             | Self::SpeedScale
             | Self::OneSpeed { .. }
+            | Self::EarthRate
             | Self::Latitude => true,
         }
     }
@@ -288,10 +300,12 @@ impl Effect {
             Self::Turning { switch_on, .. } => Scope::SwitchOn(switch_on),
             Self::Monomial { scope, .. } => scope,
             Self::ArmTurn { .. }
+            | Self::AngleTilt { .. }
             | Self::RadiusScale
             | Self::Coordinate { .. }
             | Self::SpeedScale
             | Self::OneSpeed { .. }
+            | Self::EarthRate
             | Self::Gravity
             | Self::Latitude
             | Self::Disturbance { .. }

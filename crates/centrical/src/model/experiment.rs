@@ -11,6 +11,9 @@ pub const STANDARD_GRAVITY: f64 = 9.80665;
 /// below the steps between the speeds of a schedule.
 const SAME_SPEED: f64 = 1e-3;
 
+/// Angles of rest that are nearer are one [rad].
+const SAME_ANGLE: f64 = 1e-3;
+
 /// An experiment: everything that is known before any reading is taken.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Experiment {
@@ -194,6 +197,12 @@ impl SetPoint {
         self.omega == 0.0
     }
 
+    /// Whether the plateau is a rest at an angle [rad], whole turns apart or not.
+    pub(crate) fn rests_at(&self, angle: f64) -> bool {
+        let apart = self.angle - angle;
+        self.is_rest() && apart.sin().abs() < SAME_ANGLE && apart.cos() > 0.0
+    }
+
     /// Whether the plateau spins at a speed, whatever the sense, that was set and not measured.
     pub(crate) fn has_speed(&self, omega: f64) -> bool {
         let (own, other) = (self.omega.abs(), omega.abs());
@@ -277,6 +286,17 @@ impl Experiment {
         all.sort_by(|(a, one), (b, other)| one.omega.abs().total_cmp(&other.omega.abs()).then(a.cmp(b)));
         let same = all.chunk_by(|(_, one), (_, other)| one.has_speed(other.omega));
         same.map(|same| (same.iter().map(|(n, _)| *n).min().unwrap_or(0), same.len())).collect()
+    }
+
+    /// The angles at which the arm rests, in the order of the session: the index of the first set point at each.
+    pub(crate) fn rest_angles(&self) -> Vec<usize> {
+        let mut firsts: Vec<usize> = Vec::new();
+        for (n, rest) in self.set_points.iter().enumerate().filter(|(_, s)| s.is_rest() && self.is_on_arm(s.mounting)) {
+            if !firsts.iter().any(|first| rest.rests_at(self.set_points[*first].angle)) {
+                firsts.push(n);
+            }
+        }
+        firsts
     }
 
     /// Nominal place `R0` of a plateau, arm axes [m].

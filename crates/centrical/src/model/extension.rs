@@ -7,7 +7,7 @@ use centrical_compensate::Monomial;
 
 use super::effect::{Course, Effect, Law, Scope};
 use super::error_model::{ErrorModel, Term};
-use super::experiment::{Experiment, PairRelation, STANDARD_GRAVITY};
+use super::experiment::{Experiment, PairRelation, STANDARD_GRAVITY, Site};
 use super::group::Group;
 use super::kind::Kind;
 use super::parameter::{Parameter, coefficient, parameter};
@@ -25,6 +25,8 @@ pub enum Extension {
     RadiusScale,
     /// One scale of the square of all speeds.
     SpeedScale,
+    /// The Earth's rotation, where no latitude is stated.
+    EarthRate,
     /// Local gravity.
     Gravity,
     /// Elastic turn of the arm's end, three for all positions.
@@ -41,6 +43,8 @@ pub enum Extension {
     MountingTurn,
     /// Tilt of the axis in every mounting, two each.
     MountingTilt,
+    /// Tilt of the axis at every angle of rest but the first, two each: a bearing that wobbles, or an angle other than stated.
+    AngleTilt,
     /// Bias of every mounting, three each: a unit that is switched off to be moved, or gets warm.
     MountingBias,
     /// Scale of every mounting, three each: likewise.
@@ -78,7 +82,7 @@ pub enum Difference {
 
 impl Extension {
     /// Every extension with its name as written in sessions and plans.
-    pub const NAMED: [(&'static str, Self); 37] = [
+    pub const NAMED: [(&'static str, Self); 39] = [
         ("elastic-turn-speed", Self::ElasticTurn(Law::Speed)),
         ("elastic-turn-load", Self::ElasticTurn(Law::Load)),
         ("arm-stretch-speed", Self::ArmStretch(Law::Speed)),
@@ -87,6 +91,7 @@ impl Extension {
         ("seat-stretch-load", Self::SeatStretch(Law::Load)),
         ("radius-scale", Self::RadiusScale),
         ("speed-scale", Self::SpeedScale),
+        ("earth-rate", Self::EarthRate),
         ("gravity", Self::Gravity),
         ("arm-turn-speed", Self::ArmTurn(Law::Speed)),
         ("arm-turn-load", Self::ArmTurn(Law::Load)),
@@ -96,6 +101,7 @@ impl Extension {
         ("mounting-shift", Self::MountingShift),
         ("mounting-turn", Self::MountingTurn),
         ("mounting-tilt", Self::MountingTilt),
+        ("angle-tilt", Self::AngleTilt),
         ("mounting-bias", Self::MountingBias),
         ("mounting-scale", Self::MountingScale),
         ("rests-bias", Self::RestsBias),
@@ -160,6 +166,10 @@ impl Extension {
             Self::SpeedScale => {
                 vec![effect("speed_scale".to_owned(), "1", Group::SpeedScale, Effect::SpeedScale, 1e-3)]
             }
+            Self::EarthRate if experiment.site.latitude.is_some() => Vec::new(),
+            Self::EarthRate => {
+                vec![effect("earth_rate".to_owned(), "rad/s", Group::EarthRate, Effect::EarthRate, Site::EARTH_RATE)]
+            }
             Self::Gravity => vec![effect("gravity".to_owned(), "m/s^2", Group::Gravity, Effect::Gravity, 1e-3)],
             Self::ArmTurn(law) => three(|axis| {
                 let name = format!("arm_turn_{}_{}", law.name(), axis + 1);
@@ -185,6 +195,14 @@ impl Extension {
                     effect(name, "rad", Group::MountingTilt, Effect::MountingTilt { axis, mounting }, 1e-3)
                 },
             ),
+            Self::AngleTilt => {
+                let further = experiment.rest_angles().into_iter().enumerate().skip(1);
+                let tilt = |axis: usize, n: usize, first: usize| {
+                    let name = format!("angle_tilt_{}[{}]", axis + 1, n + 1);
+                    effect(name, "rad", Group::AngleTilt, Effect::AngleTilt { axis, first }, 1e-3)
+                };
+                further.flat_map(|(n, first)| [0, 1].map(|axis| tilt(axis, n, first))).collect()
+            }
             Self::MountingBias => by_mounting(experiment, 3, |_, _| true, mounting_bias),
             Self::MountingScale => by_mounting(experiment, 3, |_, _| true, mounting_scale),
             Self::RestsBias => of_rests(experiment, error_model, "rests_bias", |monomial, _| monomial.degree() == 0),

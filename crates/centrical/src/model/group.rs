@@ -39,6 +39,8 @@ pub enum Group {
     RadiusScale,
     /// Common scale of all speeds.
     SpeedScale,
+    /// The Earth's rotation.
+    EarthRate,
     /// Error of the local gravity.
     Gravity,
     /// Elastic turn of the arm's end.
@@ -53,6 +55,8 @@ pub enum Group {
     MountingTurn,
     /// Tilt of the axis in one mounting.
     MountingTilt,
+    /// Tilt of the axis at one angle of rest.
+    AngleTilt,
     /// Bias of a newtonometer in one mounting.
     MountingBias,
     /// Scale of a newtonometer in one mounting.
@@ -63,7 +67,7 @@ pub enum Group {
 
 impl Group {
     /// All groups.
-    pub const ALL: [Self; 28] = [
+    pub const ALL: [Self; 30] = [
         Self::Bias,
         Self::Scale,
         Self::Misalignment,
@@ -82,6 +86,7 @@ impl Group {
         Self::ArmStretch,
         Self::RadiusScale,
         Self::SpeedScale,
+        Self::EarthRate,
         Self::Gravity,
         Self::ArmTurn,
         Self::SpinTurn,
@@ -89,6 +94,7 @@ impl Group {
         Self::MountingShift,
         Self::MountingTurn,
         Self::MountingTilt,
+        Self::AngleTilt,
         Self::MountingBias,
         Self::MountingScale,
         Self::Disturbance,
@@ -115,6 +121,7 @@ impl Group {
             Self::ArmStretch => "arm stretch",
             Self::RadiusScale => "scale of radii",
             Self::SpeedScale => "scale of speed",
+            Self::EarthRate => "Earth rate",
             Self::Gravity => "gravity",
             Self::ArmTurn => "turn of the arm's end",
             Self::SpinTurn => "turn while spinning",
@@ -122,6 +129,7 @@ impl Group {
             Self::MountingShift => "shift of one mounting",
             Self::MountingTurn => "turn of one mounting",
             Self::MountingTilt => "tilt in one mounting",
+            Self::AngleTilt => "tilt at one angle",
             Self::MountingBias => "bias of one mounting",
             Self::MountingScale => "scale of one mounting",
             Self::Disturbance => "disturbance",

@@ -94,6 +94,7 @@ impl Rival {
                 Extension::SeatStretch(Law::Load) => "R0_1 kappa Omega^2 |R0_1|, by seat",
                 Extension::RadiusScale => "P D R0",
                 Extension::SpeedScale => "d f / d ln Omega^2",
+                Extension::EarthRate => "d f / d omega_E",
                 Extension::Gravity => "d f / d g",
                 Extension::ArmTurn(Law::Speed) => "P tau Omega^2",
                 Extension::ArmTurn(Law::Load) => "P tau Omega^2 |R0_1|",
@@ -103,6 +104,7 @@ impl Rival {
                 Extension::MountingShift => "P D e_1, P D e_2, by mounting",
                 Extension::MountingTurn => "delta, by mounting",
                 Extension::MountingTilt => "alpha, by mounting",
+                Extension::AngleTilt => "alpha, by angle of rest",
                 Extension::MountingBias => "df0, by mounting",
                 Extension::MountingScale => "f_i, by mounting",
                 Extension::RestsBias => "df0, by switch-on of rests",
@@ -147,6 +149,7 @@ impl Rival {
                 | Extension::RadiusScale
                 | Extension::SpeedScale
                 | Extension::OneSpeed(_)
+                | Extension::EarthRate
                 | Extension::Gravity => "IEEE Std 836",
                 Extension::ArmTurn(_)
                 | Extension::SeatRadius
@@ -154,6 +157,7 @@ impl Rival {
                 | Extension::MountingShift
                 | Extension::MountingTurn
                 | Extension::MountingTilt
+                | Extension::AngleTilt
                 | Extension::RestsTilt
                 | Extension::SpinTurn
                 | Extension::OneMounting(..) => "mechanics of the arm and the seat",

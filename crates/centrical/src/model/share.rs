@@ -49,6 +49,9 @@ impl MeasurementModel {
             Effect::PositionTurn { axis, .. } | Effect::MountingTurn { axis, .. } => Share::Turn(along(axis)),
             Effect::SpinTurn { axis, .. } => only(!set_point.is_rest(), Share::Turn(along(axis))),
             Effect::MountingTilt { axis, .. } => only(set_point.is_rest(), Share::Tilt(axis)),
+            Effect::AngleTilt { axis, first } => {
+                only(set_point.rests_at(experiment.set_points[first].angle), Share::Tilt(axis))
+            }
             Effect::RestTilt { axis, .. } => Share::Tilt(axis),
             Effect::ArmStretch { law, .. } => Share::Arm(Vector3::x() * (r0_y.x * law.value(omega_squared, r0_y.x))),
             Effect::RadiusScale => Share::Arm(*r0_y),
@@ -60,6 +63,7 @@ impl MeasurementModel {
             Effect::OneSpeed { first } => {
                 only(experiment.set_points[first].has_speed(set_point.omega), Share::Rate(omega_squared))
             }
+            Effect::EarthRate => Share::Rate(set_point.omega * 2.0),
             Effect::Gravity => Share::Gravity,
             Effect::Latitude => {
                 let cosine = experiment.site.latitude.map_or(0.0, f64::cos);

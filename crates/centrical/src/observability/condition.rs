@@ -57,13 +57,12 @@ impl Study {
         let is_meant = |s: &SetPoint| s.is_rest() && self.is_on_arm(s);
         let mut angles: Vec<f64> = Vec::new();
         for set_point in self.read().filter(|s| is_meant(s)) {
-            if !angles.iter().any(|angle| at_angle(set_point, *angle)) {
+            if !angles.iter().any(|angle| set_point.rests_at(*angle)) {
                 angles.push(set_point.angle);
             }
         }
         // The angle that is read most is the one that a poorer experiment would keep.
-        let kept =
-            angles.iter().copied().max_by_key(|a| self.read().filter(|s| is_meant(s) && at_angle(s, *a)).count());
+        let kept = angles.iter().copied().max_by_key(|a| self.read().filter(|s| is_meant(s) && s.rests_at(*a)).count());
         let is_met = angles.len() >= 2;
         Condition {
             requirement: "plateaus at rest at two or more angles about the rotation axis",
@@ -71,7 +70,7 @@ impl Study {
             is_met,
             need: self.need(
                 is_met,
-                &[&|s| is_meant(s) && !kept.is_some_and(|a| at_angle(s, a))],
+                &[&|s| is_meant(s) && !kept.is_some_and(|a| s.rests_at(a))],
                 new_angle(self).as_slice(),
             ),
         }
@@ -229,10 +228,6 @@ fn counted(count: usize, one: &str, many: &str) -> String {
 fn axes_text(missing: &[usize]) -> String {
     let names: Vec<String> = missing.iter().map(|i| (i + 1).to_string()).collect();
     if names.is_empty() { "all three".to_owned() } else { format!("not axis {}", names.join(", ")) }
-}
-
-fn at_angle(s: &SetPoint, angle: f64) -> bool {
-    s.is_rest() && (s.angle - angle).sin().abs() < 1e-3 && (s.angle - angle).cos() > 0.0
 }
 
 /// Values that differ by more than a thousandth of the largest, rising.

@@ -231,7 +231,9 @@ fn ease(kind: Kind) -> Option<u8> {
         Kind::ProofMass(_) => Some(0),
         Kind::Shift { .. } => Some(1),
         Kind::Tilt(_) => Some(2),
-        Kind::Effect(Effect::RadiusScale | Effect::SpeedScale | Effect::OneSpeed { .. } | Effect::Gravity) => Some(3),
+        Kind::Effect(
+            Effect::RadiusScale | Effect::SpeedScale | Effect::OneSpeed { .. } | Effect::EarthRate | Effect::Gravity,
+        ) => Some(3),
         Kind::Turn { .. } | Kind::CaseTurn(_) => Some(4),
         Kind::Effect(_) => Some(5),
         // Nothing but the unit itself shows how it lay in a hand.

@@ -96,9 +96,12 @@ fn every_effect_is_shown_and_named() {
         assert!(told + 1 >= SESSIONS, "{}: {told}", rival.name());
         assert!(named + 1 >= SESSIONS, "{}: {named}, instead {instead:?}", rival.name());
     }
-    // The source's model has the squares, and its experiment no rests beside the arm. The lateral place of a seat acts as the bias of two newtonometers and turns do: no session of this plan
+    // The source's model has the squares; its experiment states a latitude, and no rests beside the arm. The lateral place of a seat acts as the bias of two newtonometers and turns do: no session of this plan
     // can show it.
-    assert_eq!(followed, ["own-squares", "seat-lateral", "rests-bias", "rests-scale", "rests-unit", "rests-tilt"]);
+    assert_eq!(
+        followed,
+        ["own-squares", "earth-rate", "seat-lateral", "rests-bias", "rests-scale", "rests-unit", "rests-tilt"]
+    );
 }
 
 /// A session of a laboratory that states `STATED`, with every stated deviation drawn.

@@ -176,7 +176,7 @@ fn arm_stretch_and_scales() {
 #[test]
 fn rivals() {
     let all = |name: &str| Rival::named(name).unwrap();
-    let table: [(&[&str], usize, usize, usize); 18] = [
+    let table: [(&[&str], usize, usize, usize); 20] = [
         (&["odd-quadratic"], 52, 52, 50),
         (&["asymmetry"], 52, 52, 50),
         (&["fourth-power"], 52, 52, 50),
@@ -195,6 +195,8 @@ fn rivals() {
         (&["spin-turn"], 67, 61, 59),
         (&["yield"], 52, 52, 50),
         (&["arm-stretch-speed"], 50, 50, 48),
+        (&["earth-rate"], 50, 50, 48),
+        (&["angle-tilt"], 51, 51, 49),
     ];
     for (names, columns, common, printed) in table {
         let rivals: Vec<Rival> = names.iter().map(|name| all(name)).collect();
