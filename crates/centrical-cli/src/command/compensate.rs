@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use centrical_report::{compensation_text, verdict_text};
-use centrical_session::{Axes, CompensationRequest, Error, compensate, unwatched};
+use centrical_session::{Axes, CompensationRequest, Error, Redundancy, compensate, unwatched};
 
 use crate::given::acceleration;
 use crate::output::{Outcome, Printing};
@@ -53,7 +53,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let text = || {
         let mut screen = compensation_text(&compensated, &certificate, &arguments.out);
         if !objections.is_empty() {
-            screen.add(verdict_text(&objections, true));
+            screen.add(verdict_text(&objections, Redundancy::Everywhere));
         }
         screen
     };

@@ -136,7 +136,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let is_within = is_within_limits(unit.as_ref());
     let text = || {
         let mut screen =
-            if objections.is_empty() { Screen::default() } else { verdict_text(&objections, result.is_checked()) };
+            if objections.is_empty() { Screen::default() } else { verdict_text(&objections, result.redundancy()) };
         screen.add(unit.as_ref().filter(|_| !is_within).map(unit_text).unwrap_or_default());
         screen
     };

@@ -35,7 +35,7 @@ pub struct Arguments {
     #[arg(long, value_name = "QUANTITY", value_parser = gravity)]
     gravity: Option<f64>,
     /// Standard uncertainty of gravity [default: 0.02 m/s^2, or 0 for a gravity that is given]
-    #[arg(long, value_name = "QUANTITY", value_parser = acceleration)]
+    #[arg(long, value_name = "QUANTITY", value_parser = acceleration, requires = "gravity")]
     gravity_uncertainty: Option<f64>,
     /// Attitudes in which the unit was laid down: a table of up_1, up_2, up_3 in axes of the case, or "cube" for its faces,
     /// edges and corners

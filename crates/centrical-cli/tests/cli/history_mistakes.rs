@@ -479,6 +479,10 @@ fn sessions_of_a_single_day_have_no_trend() {
     let (code, text, _) = results.run(&["unit", ".", "--limit", "1 ug"]);
     assert!(code == 1 && text.contains("OVERDUE"), "{text}");
     assert_eq!(results.document(&["unit", "."])["trend"], false);
+    let (_, text, _) = results.run(&["unit", ".", "--limit", "1 g"]);
+    assert!(text.contains("NOT KNOWN  calibrations of a single day do not show until when"), "{text}");
+    let due = results.document(&["unit", ".", "--limit", "1 g"]);
+    assert!(due["due"].is_null() && due["due_after"].is_null(), "{due}");
 }
 
 /// Results of the same records agree better than independent calibrations do.

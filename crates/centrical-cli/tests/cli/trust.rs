@@ -138,7 +138,8 @@ fn calibrate_tells_sources_validity_and_verdict() {
     for part in [
         "value ± standard uncertainty",
         "FROM    noise, speed of each plateau\n",
-        "states no [uncertainty]",
+        "counts as exact: gravity, latitude, ",
+        "gravity is 9.81523 m/s^2",
         "VALID   chi^2 as large or larger comes by chance with a probability of 0.1",
         "none of the 108 plateaus stands out",
         "patterns against speed, position, radius and time in the residuals",

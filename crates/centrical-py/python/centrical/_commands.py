@@ -95,7 +95,7 @@ def tumble(
     gravity
         At the place [m/s^2]; 9.80665 m/s^2, uncertain by 0.02 m/s^2, if it is not given.
     gravity_uncertainty
-        Its standard uncertainty [m/s^2]; zero of a gravity that is given.
+        Standard uncertainty of a gravity that is given [m/s^2]; zero if it is not given.
     attitudes
         Attitudes in which the unit was laid down, where they are known, in any order: an array of shape ``(n, 3)`` of the
         direction of up in axes of the case, the path of such a table, or ``"cube"`` for its faces, edges and corners.

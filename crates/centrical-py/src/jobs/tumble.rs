@@ -46,6 +46,9 @@ pub fn tumble(
     let [gravity, uncertainty] = gravity;
     let gravity = Amount::checked(gravity, "gravity", Quantity::gravity)?;
     let uncertainty = Amount::optional(uncertainty, "gravity", Dimension::Acceleration)?;
+    if gravity.is_none() && uncertainty.is_some() {
+        return Err(refused("gravity_uncertainty", "expected a gravity that it is of"));
+    }
     let anywhere = if gravity.is_some() { 0.0 } else { TumbleRequest::GRAVITY_ANYWHERE };
     let (mut files, mut folder) = (Vec::new(), Folder::default());
     for record in records {

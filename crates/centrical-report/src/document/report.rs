@@ -1,6 +1,6 @@
 //! The report of a calibration: verdict, session, parameters, budget, figures.
 
-use centrical_session::{CalibrationResult, ParameterEstimate, UnitHistoryReport, ValiditySummary};
+use centrical_session::{CalibrationResult, ParameterEstimate, Redundancy, UnitHistoryReport, ValiditySummary};
 
 use super::axes::axes;
 use super::conformity::{judged_in_words, rule};
@@ -82,9 +82,13 @@ fn is_of_first_layer(figure: &Figure) -> bool {
 fn verdicts(result: &CalibrationResult, unit: Option<&UnitStatement>, language: Language) -> [Section; 2] {
     let messages = language.messages();
     let objections = result.objections();
-    let good = if result.is_checked() { messages.verdict_good } else { messages.verdict_unchecked };
+    let good = match result.redundancy() {
+        Redundancy::Everywhere => messages.verdict_good.to_owned(),
+        Redundancy::ButFor(parameters) => (messages.words.verdict_partly_checked)(&parameters.join(", ")),
+        Redundancy::Nowhere => messages.verdict_unchecked.to_owned(),
+    };
     let mut blocks = if objections.is_empty() {
-        vec![Block::heading(messages.acceptable, 4), Block::paragraph(good)]
+        vec![Block::heading(messages.acceptable, 4), Block::Paragraph(good)]
     } else {
         refusal(&objections, language)
     };

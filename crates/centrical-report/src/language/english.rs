@@ -286,6 +286,7 @@ pub(crate) const ENGLISH: Messages = Messages {
     mark_place: "place for mark or seal",
     words: Words {
         axes: words::axes,
+        verdict_partly_checked: words::verdict_partly_checked,
         known_attitudes: words::known_attitudes,
         between_rests: words::between_rests,
         turning: words::turning,

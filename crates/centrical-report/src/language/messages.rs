@@ -305,6 +305,8 @@ pub(crate) struct Messages {
 /// Words for what is one of several, in one language; each function names all of them.
 pub(crate) struct Words {
     pub axes: fn(&AxesName) -> String,
+    /// The verdict on a result some of whose parameters nothing checks: these.
+    pub verdict_partly_checked: fn(&str) -> String,
     /// How many attitudes of all rests are known, and to what standard uncertainty at most.
     pub known_attitudes: fn(usize, usize, &str) -> String,
     /// The scatter from rest to rest and the drift of the biases that the uncertainties include.

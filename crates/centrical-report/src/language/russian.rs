@@ -283,6 +283,7 @@ pub(crate) const RUSSIAN: Messages = Messages {
     mark_place: "место печати",
     words: Words {
         axes: words::axes,
+        verdict_partly_checked: words::verdict_partly_checked,
         known_attitudes: words::known_attitudes,
         between_rests: words::between_rests,
         turning: words::turning,

@@ -170,6 +170,9 @@ pub(super) fn rival(rival: Rival) -> &'static str {
                 "масштаб в положениях покоя [[tumble]], отличный от масштаба на центрифуге: другая температура или сила тяжести"
             }
             Extension::RestsUnit => "другой прибор или другой порядок осей в положениях покоя [[tumble]]",
+            Extension::AttitudesTilt => {
+                "заданные ориентации, ошибки которых больше заявленных и одинаковы в каждом покое"
+            }
             Extension::RestsTilt => "ориентации в покое, ошибки которых больше заявленных",
             Extension::SpinTurn => "поворот прибора между покоем и вращением",
             Extension::Disturbance(Course::Spinning) => {
@@ -198,12 +201,13 @@ pub(super) fn rival(rival: Rival) -> &'static str {
 }
 
 /// Words in the formulas of rivals.
-const OF_FORMULAS: [(&str, &str); 16] = [
+const OF_FORMULAS: [(&str, &str); 17] = [
     ("by position", "по положениям"),
     ("by seat", "по посадочным местам"),
     ("by mounting", "по установкам"),
     ("by angle of rest", "по углам покоя"),
     ("by switch-on of rests", "по включениям в покое"),
+    ("by stated attitude", "по заданным ориентациям"),
     ("by rest", "по положениям покоя"),
     ("while spinning", "при вращении"),
     ("those taken as exact", "принятые за точные"),
@@ -238,6 +242,13 @@ pub(super) fn turning(arcs: usize, share: &str, [rate, radius, acceleration]: [&
 }
 
 /// How many attitudes of all rests are known, and to what standard uncertainty at most.
+pub(super) fn verdict_partly_checked(parameters: &str) -> String {
+    format!(
+        "Результатом можно пользоваться, насколько верны заявленные сведения: оценивание сошлось, все параметры прибора \
+         определены. Но {parameters} ничем не проверены: показания, по которым они найдены, не избыточны."
+    )
+}
+
 pub(super) fn known_attitudes(known: usize, all: usize, uncertainty: &str) -> String {
     match known {
         0 => "Ориентации заранее не известны.".to_owned(),

@@ -2,7 +2,7 @@
 
 use centrical::uncertainty::{Budget, CurvePoint, Degrees, Level, Pattern, Validity};
 use centrical::{Experiment, Fit, MeasurementModel, Parameter, Parameters, STANDARD_GRAVITY};
-use centrical_session::{Assessment, MICRO_G, PatternSummary, customary, rpm};
+use centrical_session::{Assessment, MICRO_G, PatternSummary, Redundancy, customary, rpm};
 
 use super::phrases::{legend, pattern_in_words};
 use super::screen::Screen;
@@ -32,7 +32,8 @@ pub fn assessment_text(assessment: &Assessment, coverage: f64, correlations: boo
     }
     screen.gap();
     let used = cleaned.as_ref().map_or(fit, |(after, _)| after);
-    screen.add(verdict_text(objections, used.degrees_of_freedom > 0));
+    let redundancy = if used.degrees_of_freedom > 0 { Redundancy::Everywhere } else { Redundancy::Nowhere };
+    screen.add(verdict_text(objections, redundancy));
     screen
 }
 

@@ -12,7 +12,7 @@ use super::rests::rests;
 use super::rests_on::{priors as prior_table, rests_on_text};
 use super::screen::Screen;
 use super::table::{Align, Cell, Table};
-use crate::document::{rival, speeds};
+use crate::document::{counts_as_exact, rival, speeds};
 use crate::evaluation::{ParameterName, combination, monomial};
 use crate::language::Language;
 use crate::number::counted;
@@ -285,11 +285,8 @@ fn uncertainties(screen: &mut Screen, result: &CalibrationResult) {
     let Some(budget) = &result.budget else { return };
     let names: Vec<&str> = budget.sources.iter().map(|source| source.name.name()).collect();
     screen.fact("FROM", &names.join(", "));
-    if result.stated_sources().is_empty() {
-        let exact =
-            if result.model.has_arm() { "gravity, radii, attitudes and the like count" } else { "gravity counts" };
-        screen.fact("", &format!("the session states no [uncertainty]: {exact} as exact"));
-    }
+    let exact = counts_as_exact(result, Language::English);
+    screen.fact("", &format!("counts as exact: {exact}; gravity is {} m/s^2", result.model.gravity));
 }
 
 /// Plateaus that are named one by one where they are held out.

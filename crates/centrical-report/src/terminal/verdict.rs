@@ -1,8 +1,9 @@
 //! The verdict on a calibration, what a decision says of the unit, and the result below both, as text for the terminal.
 
-use centrical_session::{CalibrationResult, ResultObjection};
+use centrical_session::{CalibrationResult, Redundancy, ResultObjection};
 
 use super::calibrate::table_of;
+use super::phrases::short_list;
 use super::screen::{Emphasis, Screen};
 use crate::document::{judged_in_words, objection};
 use crate::evaluation::{UnitStatement, UnitVerdict};
@@ -11,7 +12,7 @@ use crate::number::counted;
 
 /// The verdicts, the result that they are of, and a last line if one is `said`.
 pub fn result_text(result: &CalibrationResult, unit: Option<&UnitStatement>, said: Option<&str>) -> Screen {
-    let mut screen = verdict_text(&result.objections(), result.is_checked());
+    let mut screen = verdict_text(&result.objections(), result.redundancy());
     screen.add(unit.map(unit_text).unwrap_or_default());
     screen.gap();
     screen.add(table_of(result));
@@ -22,15 +23,22 @@ pub fn result_text(result: &CalibrationResult, unit: Option<&UnitStatement>, sai
     screen
 }
 
-/// The verdict in a line, or one for each objection; said again below a text that is longer than a screen. `is_checked`: whether any reading is
-/// redundant.
-pub fn verdict_text(objections: &[ResultObjection], is_checked: bool) -> Screen {
+/// The verdict in a line, or one for each objection; said again below a text that is longer than a screen.
+pub fn verdict_text(objections: &[ResultObjection], redundancy: Redundancy) -> Screen {
+    /// Parameters that are named.
+    const NAMED: usize = 9;
     let mut screen = Screen::default();
     if objections.is_empty() {
-        let unchecked = "but no reading is redundant: nothing checks the stated uncertainties";
-        let words = if is_checked { "no check raised an objection" } else { unchecked };
-        screen.marked(Emphasis::Acceptable, "ACCEPTABLE", words);
-        screen.close(Emphasis::Acceptable, "ACCEPTABLE", words);
+        let words = match redundancy {
+            Redundancy::Everywhere => "no check raised an objection".to_owned(),
+            Redundancy::ButFor(parameters) => {
+                let names = short_list(parameters, NAMED, ", ");
+                format!("but nothing checks {names}: the readings that they rest on are not redundant")
+            }
+            Redundancy::Nowhere => "but no reading is redundant: nothing checks the stated uncertainties".to_owned(),
+        };
+        screen.marked(Emphasis::Acceptable, "ACCEPTABLE", &words);
+        screen.close(Emphasis::Acceptable, "ACCEPTABLE", &words);
         return screen;
     }
     for reason in objections {

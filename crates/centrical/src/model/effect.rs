@@ -66,6 +66,13 @@ pub enum Effect {
         /// Index of the position.
         position: usize,
     },
+    /// The same of all rests whose attitude is stated alike: a face of a cube, an angle of a table.
+    AttitudeTilt {
+        /// Reference axis, 0 or 1.
+        axis: usize,
+        /// Index of the first position with that attitude.
+        first: usize,
+    },
     /// Relative stretch of the arm, `R_1 (1 + kappa law)` (IEEE Std 836), of one seat or of all.
     ArmStretch {
         /// What it grows with.
@@ -155,6 +162,8 @@ pub enum Scope {
     Session,
     /// In a position, by its index.
     Position(usize),
+    /// In the rests with the stated attitude of a position, by its index.
+    Attitude(usize),
     /// On a seat, by its first mounting.
     Seat(usize),
     /// In a mounting, by its index.
@@ -170,6 +179,7 @@ impl Scope {
         match self {
             Self::Session => true,
             Self::Position(k) => k == position,
+            Self::Attitude(k) => experiment.positions[k].shares_attitude(&experiment.positions[position]),
             Self::Seat(seat) => seat == experiment.seat_of(mounting),
             Self::Mounting(m) => m == mounting,
             Self::SwitchOn(number) => number == experiment.positions[position].switch_on.number,
@@ -263,6 +273,7 @@ impl Effect {
             | Self::Monomial { .. }
             | Self::Disturbance { .. }
             | Self::RestTilt { .. }
+            | Self::AttitudeTilt { .. }
             | Self::Turning { .. }
             | Self::Rounding { .. } => false,
             Self::ElasticTurn { .. }
@@ -297,6 +308,7 @@ impl Effect {
             | Self::MountingTilt { mounting, .. }
             | Self::MountingShift { mounting, .. } => Scope::Mounting(mounting),
             Self::ArmStretch { seat, .. } | Self::SeatPlace { seat, .. } => seat.map_or(Scope::Session, Scope::Seat),
+            Self::AttitudeTilt { first, .. } => Scope::Attitude(first),
             Self::Turning { switch_on, .. } => Scope::SwitchOn(switch_on),
             Self::Monomial { scope, .. } => scope,
             Self::ArmTurn { .. }

@@ -11,6 +11,7 @@ use super::experiment::{Experiment, PairRelation, STANDARD_GRAVITY, Site};
 use super::group::Group;
 use super::kind::Kind;
 use super::parameter::{Parameter, coefficient, parameter};
+use super::position::Position;
 
 /// Unknowns beyond the source's 49, each off by default.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -57,6 +58,8 @@ pub enum Extension {
     RestsUnit,
     /// Tilts of the rests in known attitudes, two each, beyond what is stated of these.
     RestsTilt,
+    /// The same of each stated attitude, where several rests share one: errors of the faces of a cube, or of a table's angles.
+    AttitudesTilt,
     /// Turn of the unit while spinning against that at rest, three per position.
     SpinTurn,
     /// Coordinates of the proof masses that are taken as exact ([`Unit::is_coordinate_taken_as_exact`]).
@@ -82,7 +85,7 @@ pub enum Difference {
 
 impl Extension {
     /// Every extension with its name as written in sessions and plans.
-    pub const NAMED: [(&'static str, Self); 39] = [
+    pub const NAMED: [(&'static str, Self); 40] = [
         ("elastic-turn-speed", Self::ElasticTurn(Law::Speed)),
         ("elastic-turn-load", Self::ElasticTurn(Law::Load)),
         ("arm-stretch-speed", Self::ArmStretch(Law::Speed)),
@@ -108,6 +111,7 @@ impl Extension {
         ("rests-scale", Self::RestsScale),
         ("rests-unit", Self::RestsUnit),
         ("rests-tilt", Self::RestsTilt),
+        ("attitudes-tilt", Self::AttitudesTilt),
         ("spin-turn", Self::SpinTurn),
         ("proof-masses", Self::ProofMasses),
         ("spin-step", Self::Disturbance(Course::Spinning)),
@@ -217,6 +221,17 @@ impl Extension {
                     effect(name, "rad", Group::Attitude, Effect::RestTilt { axis, position }, 1e-3)
                 };
                 known.flat_map(|(k, position)| [0, 1].map(|axis| tilt(axis, k, &position.id))).collect()
+            }
+            Self::AttitudesTilt => {
+                let positions = &experiment.positions;
+                let shared_by = |first: &Position| positions.iter().filter(|p| p.shares_attitude(first)).count();
+                let is_first = |k: usize| !positions[..k].iter().any(|p| p.shares_attitude(&positions[k]));
+                let firsts = (0..positions.len()).filter(|&k| is_first(k) && shared_by(&positions[k]) > 1);
+                let tilt = |axis: usize, first: usize| {
+                    let name = format!("attitude_tilt_{}[{}]", axis + 1, positions[first].id);
+                    effect(name, "rad", Group::Attitude, Effect::AttitudeTilt { axis, first }, 1e-3)
+                };
+                firsts.flat_map(|k| [0, 1].map(|axis| tilt(axis, k))).collect()
             }
             Self::SpinTurn => by_position(experiment, |axis, position, id| {
                 let name = format!("spin_turn_{}[{id}]", axis + 1);

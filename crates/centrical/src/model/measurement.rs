@@ -3,7 +3,7 @@
 use nalgebra::Matrix3;
 
 use super::effect::Effect;
-use super::error_model::ErrorModel;
+use super::error_model::{ErrorModel, Extra};
 use super::experiment::{Experiment, SetPoint};
 use super::extension::{Difference, Extension};
 use super::frame::carousel;
@@ -87,7 +87,8 @@ impl MeasurementModel {
     }
 
     /// The rivals that the model leaves out, neither unknown nor stated: of the session, of each of its mountings, and of each speed that is set
-    /// more than once and not measured. Where there are more than a hundred mountings, or speeds, single ones are not asked for.
+    /// more than once and not measured. Where there are more than a hundred mountings, or speeds, single ones are not asked for. Rests alone are
+    /// not asked for products of third degree: at 1 g errors of attitudes look like them, and are far larger.
     pub fn left_out(&self) -> Vec<Rival> {
         let common = Rival::COMMON.into_iter().zip(self.stated.effects).filter(|(_, u)| *u == 0.0);
         let of_mounting = |mounting: usize| {
@@ -100,8 +101,10 @@ impl MeasurementModel {
         let of_speed = |k: usize| Rival::Effect(Extension::OneSpeed(k));
         let is_asked = |k: &usize| speeds.len() <= MOST_SINGLE && speeds[*k].1 > 1;
         let speeds = (0..speeds.len()).filter(is_asked).map(of_speed);
+        let needs_load = |rival: &Rival| matches!(rival, Rival::Terms(Extra::CrossCubes | Extra::CubicProducts));
+        let is_loaded = |rival: &Rival| self.experiment.has_arm() || !needs_load(rival);
         let is_small = |rival: &Rival| rival.parameters(&self.experiment, &self.error_model).len() <= MOST_UNKNOWNS;
-        let all = common.map(|(rival, _)| rival).filter(is_small).chain(mountings).chain(speeds);
+        let all = common.map(|(rival, _)| rival).filter(is_loaded).filter(is_small).chain(mountings).chain(speeds);
         all.filter(|rival| !rival.is_in(&self.error_model, &self.extensions)).collect()
     }
 

@@ -38,6 +38,12 @@ pub struct SwitchOn {
 }
 
 impl Position {
+    /// Whether the attitudes of two rests are stated, and stated alike.
+    pub(crate) fn shares_attitude(&self, other: &Self) -> bool {
+        let is_stated = |position: &Self| position.attitude_uncertainty.is_some();
+        is_stated(self) && is_stated(other) && self.p_zy == other.p_zy
+    }
+
     /// A position on the arm.
     pub fn on_arm(id: impl Into<String>, p_zy: Matrix3<f64>, pair: impl Into<String>) -> Self {
         let (id, pair) = (id.into(), pair.into());

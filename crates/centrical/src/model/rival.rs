@@ -111,6 +111,7 @@ impl Rival {
                 Extension::RestsScale => "f_i, by switch-on of rests",
                 Extension::RestsUnit => "f_j, by switch-on of rests",
                 Extension::RestsTilt => "theta, by rest",
+                Extension::AttitudesTilt => "theta, by stated attitude",
                 Extension::SpinTurn => "delta while spinning, by position",
                 Extension::ProofMasses => "d f / d rho_ji, those taken as exact",
                 Extension::Disturbance(Course::Spinning) => "1 where Omega > 0",
@@ -159,6 +160,7 @@ impl Rival {
                 | Extension::MountingTilt
                 | Extension::AngleTilt
                 | Extension::RestsTilt
+                | Extension::AttitudesTilt
                 | Extension::SpinTurn
                 | Extension::OneMounting(..) => "mechanics of the arm and the seat",
                 Extension::ProofMasses => "the source's section 3",

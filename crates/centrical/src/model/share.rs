@@ -52,7 +52,7 @@ impl MeasurementModel {
             Effect::AngleTilt { axis, first } => {
                 only(set_point.rests_at(experiment.set_points[first].angle), Share::Tilt(axis))
             }
-            Effect::RestTilt { axis, .. } => Share::Tilt(axis),
+            Effect::RestTilt { axis, .. } | Effect::AttitudeTilt { axis, .. } => Share::Tilt(axis),
             Effect::ArmStretch { law, .. } => Share::Arm(Vector3::x() * (r0_y.x * law.value(omega_squared, r0_y.x))),
             Effect::RadiusScale => Share::Arm(*r0_y),
             Effect::SeatPlace { axis, .. }

@@ -19,6 +19,12 @@ use crate::statistics::chi_squared_tail;
 /// A share of a reading below this is rounding: the reading is not redundant, nothing checks it.
 const REDUNDANT: f64 = 1e-8;
 
+/// Part of a reading that is redundant, below which no other checks it: its residual shows less than a tenth of its error.
+const CHECKED: f64 = 0.01;
+
+/// Part of its variance that a parameter has from readings which no other checks, above which it counts as unchecked.
+const MOSTLY: f64 = 0.5;
+
 /// The checks of a fit.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Validity {
@@ -28,6 +34,8 @@ pub struct Validity {
     pub plateaus: Vec<PlateauCheck>,
     /// By mounting that has observations.
     pub mountings: Vec<MountingCheck>,
+    /// Parameters of the instrument that rest on readings which no other checks: errors of these readings move them and leave no residual.
+    pub unchecked: Vec<usize>,
 }
 
 /// The check of one plateau.
@@ -100,7 +108,26 @@ impl Calibration<'_> {
             probability: chi_squared_tail(fit.chi_squared, fit.degrees_of_freedom),
             plateaus: (0..observations.len()).map(|n| blocks.plateau(n, observations[n].set_point)).collect(),
             mountings: mountings.collect(),
+            unchecked: self.unchecked(&blocks)?,
         })
+    }
+
+    /// Parameters of the instrument with more than half of their variance from readings that no other checks, where any does.
+    fn unchecked(&self, blocks: &Blocks) -> Result<Vec<usize>, FitError> {
+        let (fit, parameters) = (self.fit(), self.data().model().parameters());
+        let mut variances = vec![0.0; parameters.len()];
+        for n in 0..self.data().observations().len() {
+            let followed = blocks.followed_alone(n);
+            if followed.ncols() > 0 {
+                let shifts = self.gain()?.shifts(&followed);
+                variances.iter_mut().zip(shifts.row_iter()).for_each(|(sum, shift)| *sum += shift.norm_squared());
+            }
+        }
+        let is_unchecked = |&j: &usize| {
+            let u = fit.standard_uncertainty(j).filter(|_| parameters[j].is_of_instrument());
+            u.is_some_and(|u| variances[j] > MOSTLY * u * u)
+        };
+        Ok((0..parameters.len()).filter(is_unchecked).collect())
     }
 
     /// chi^2 of a fit of the same data whose noise has `times` the variance. What is stated of attitudes and speeds stays.
@@ -186,6 +213,14 @@ impl Blocks<'_> {
         });
         let leverage = (0..3).map(hat).sum::<f64>() / 3.0;
         PlateauCheck { set_point, standardised, leverage, prediction: self.predict(&[n]) }
+    }
+
+    /// `Q_b^T v` of the directions `v` of an observation's readings in which no other checks them.
+    fn followed_alone(&self, n: usize) -> DMatrix<f64> {
+        let rows = self.basis.rows(3 * n, 3);
+        let eigen = SymmetricEigen::new(DMatrix::identity(3, 3) - rows * rows.transpose());
+        let unchecked: Vec<usize> = (0..3).filter(|i| eigen.eigenvalues[*i] < CHECKED).collect();
+        rows.transpose() * eigen.eigenvectors.select_columns(&unchecked)
     }
 
     /// The readings of the observations `members` from all others, along the principal directions of `E - H_bb`; those

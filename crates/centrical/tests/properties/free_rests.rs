@@ -308,6 +308,25 @@ fn faces_in_known_attitudes_show_the_whole_linear_model() {
     }
 }
 
+/// On each face once, two readings give a bias and a scale: their errors leave no residual. On each face twice they do; on the cube's edges and
+/// corners too.
+#[test]
+fn biases_and_scales_of_one_visit_to_each_face_are_unchecked() {
+    let unchecked = |directions: &[Vector3<f64>]| -> Vec<String> {
+        let model = rests_alone(directions, 2);
+        let model = model.in_experiment(known(model.experiment().clone(), 1e-3));
+        let mut random = Random::new(33);
+        let truth = truth(&model, 1.0, &mut random);
+        let data = Data::new(&model, observed(&model, &truth, &mut random)).unwrap();
+        let validity = Calibration::exact(&data).unwrap().validity().unwrap();
+        validity.unchecked.iter().map(|j| model.parameters()[*j].name.clone()).collect()
+    };
+    let once = faces();
+    assert_eq!(unchecked(&once), ["df_1", "df_2", "df_3", "G0_11", "G0_22", "G0_33"]);
+    assert!(unchecked(&[once.clone(), once].concat()).is_empty());
+    assert!(unchecked(&cube()).is_empty());
+}
+
 /// As above for known attitudes, each set with its own errors about the attitudes stated; the turn against the case is one of the
 /// estimates.
 #[test]

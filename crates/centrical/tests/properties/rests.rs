@@ -3,8 +3,8 @@
 use centrical::reduction::{CoarseScale, PlateauMean, Record, ReductionError, RepeatedRests, RestRecord, Rests};
 use centrical::uncertainty::{Level, Rivals, chance_of_residuals};
 use centrical::{
-    Calibration, Centrifuge, Data, ErrorModel, Experiment, Fit, MeasurementModel, Mounting, Observation, PairRelation,
-    Position, ReferencePoint, SetPoint, Site, SwitchOn, TypeB, Unit, unwatched,
+    Calibration, Centrifuge, Data, ErrorModel, Experiment, Extension, Fit, MeasurementModel, Mounting, Observation,
+    PairRelation, Position, ReferencePoint, Rival, SetPoint, Site, SwitchOn, TypeB, Unit, unwatched,
 };
 use nalgebra::{DMatrix, DVector, Matrix3, Rotation3, Vector3};
 
@@ -773,6 +773,35 @@ fn faces_in_known_attitudes_raise_no_alarm() {
         // By chance in one set of 10,000.
         assert!(shown.is_empty(), "{run}: {shown:?}");
     }
+}
+
+/// Faces of a cube that are off by five times what is stated, alike in each of four visits: named so, and no term of the unit instead.
+#[test]
+fn faces_that_are_off_in_each_visit_are_named() {
+    const RUNS: usize = 40;
+    const STATED: f64 = 2e-4;
+    let mut random = Random::new(34);
+    let mut named = 0;
+    for _ in 0..RUNS {
+        let mut normal = |size: f64| Vector3::from_fn(|_, _| size * random.normal());
+        let up = |face: usize| Vector3::ith(face / 2, if face % 2 == 0 { 1.0 } else { -1.0 });
+        let turn = Rotation3::from_scaled_axis(normal(0.01));
+        let of_faces: [Vector3<f64>; 6] =
+            std::array::from_fn(|face| turn * (Rotation3::from_scaled_axis(normal(5.0 * STATED)) * up(face)) * GRAVITY);
+        let (mut positions, mut means) = (Vec::new(), Vec::new());
+        for rest in 0..24 {
+            positions.push(Position::known(rest.to_string(), &up(rest % 6), STATED));
+            means.push((of_faces[rest % 6] + normal(1e-4), Matrix3::identity() * 1e-8));
+        }
+        let (model, observations) = problem(positions, &means);
+        let data = Data::new(&model, observations).unwrap();
+        let calibration = Calibration::exact(&data).unwrap();
+        let shown = Rivals::of(&calibration, &unwatched).unwrap().suspects(Level::Objection.probability()).shown;
+        let first = shown.first().map(|test| test.rival);
+        named += usize::from(first == Some(Rival::Effect(Extension::AttitudesTilt)));
+    }
+    // Errors of faces are now and then those of a term.
+    assert!(4 * named >= 3 * RUNS, "{named} of {RUNS}");
 }
 
 /// Rests that scatter tenfold beyond their noise are judged by that scatter along the force, in known attitudes too: across it the

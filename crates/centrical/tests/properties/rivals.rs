@@ -100,7 +100,16 @@ fn every_effect_is_shown_and_named() {
     // can show it.
     assert_eq!(
         followed,
-        ["own-squares", "earth-rate", "seat-lateral", "rests-bias", "rests-scale", "rests-unit", "rests-tilt"]
+        [
+            "own-squares",
+            "earth-rate",
+            "seat-lateral",
+            "rests-bias",
+            "rests-scale",
+            "rests-unit",
+            "rests-tilt",
+            "attitudes-tilt"
+        ]
     );
 }
 

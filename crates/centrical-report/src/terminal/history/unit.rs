@@ -89,7 +89,9 @@ fn due(screen: &mut Screen, report: &UnitHistoryReport) {
             screen.marked(Emphasis::Acceptable, "DUE", &words);
         }
         (None, Some(limit), None) => {
-            let words = format!("the calibrations do not show until when a compensated reading is {}", within(limit));
+            let of_one_day = report.sessions.windows(2).all(|pair| pair[0].date == pair[1].date);
+            let calibrations = if of_one_day { "calibrations of a single day" } else { "the calibrations" };
+            let words = format!("{calibrations} do not show until when a compensated reading is {}", within(limit));
             screen.marked(Emphasis::Warning, "NOT KNOWN", &words);
         }
         (_, None, _) => {}

@@ -65,6 +65,9 @@ pub struct ValiditySummary {
     /// Those shown at a family-wise error of 5 % (Holm), the one that explains most first.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub rivals: Vec<RivalSummary>,
+    /// Parameters of the instrument that rest on readings which no other checks.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub unchecked: Vec<String>,
 }
 
 impl ValiditySummary {
@@ -187,10 +190,13 @@ impl ValiditySummary {
             Some(first) => calibration.patterns_beside(rivals, first.rival)?,
             None => calibration.patterns()?,
         };
-        let checks = Self::new(experiment, &calibration.validity()?, &patterns);
+        let validity = calibration.validity()?;
+        let checks = Self::new(experiment, &validity, &patterns);
+        let parameters = calibration.data().model().parameters();
+        let unchecked = validity.unchecked.iter().map(|j| parameters[*j].name.clone()).collect();
         let of_strongest_noise = noise_at_most.map(|times| calibration.chi_squared_of_noise(times)).transpose()?;
         let (rivals_tested, rivals) = (suspects.tested, RivalSummary::all(&suspects, experiment));
-        Ok(Self { noise_at_most, of_strongest_noise, rivals_tested, rivals, ..checks })
+        Ok(Self { noise_at_most, of_strongest_noise, rivals_tested, rivals, unchecked, ..checks })
     }
 
     /// The checks of a fit in the form of the file.
@@ -228,6 +234,7 @@ impl ValiditySummary {
             patterns: reported.map(|pattern| PatternSummary::new(experiment, pattern)).collect(),
             rivals_tested: 0,
             rivals: Vec::new(),
+            unchecked: Vec::new(),
         }
     }
 }

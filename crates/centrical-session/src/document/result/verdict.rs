@@ -19,6 +19,17 @@ pub(super) fn is_vague(group: Group, standard_uncertainty: f64) -> bool {
 /// An objection to a result: plateaus as `mounting:plateau`, counted from 1.
 pub type ResultObjection = Objection<String, PatternSummary, RivalSummary, SpeedFinding>;
 
+/// How far redundant readings check a result.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Redundancy<'r> {
+    /// Every parameter of the instrument rests on readings that others check.
+    Everywhere,
+    /// All but these do.
+    ButFor(&'r [String]),
+    /// No reading is redundant.
+    Nowhere,
+}
+
 impl CalibrationResult {
     /// The objections to the result; empty if it is acceptable.
     pub fn objections(&self) -> Vec<ResultObjection> {
@@ -57,14 +68,19 @@ impl CalibrationResult {
         validity.of_strongest_noise.or_else(|| Some(self.fit.chi_squared / validity.noise_at_most?))
     }
 
-    /// Whether any reading is redundant: without one nothing checks the stated uncertainties.
-    pub fn is_checked(&self) -> bool {
-        self.fit.degrees_of_freedom > 0
+    /// How far redundant readings check the result.
+    pub fn redundancy(&self) -> Redundancy<'_> {
+        let unchecked = self.validity.as_ref().map_or(&[][..], |validity| &validity.unchecked);
+        match (self.fit.degrees_of_freedom, unchecked) {
+            (0, _) => Redundancy::Nowhere,
+            (_, []) => Redundancy::Everywhere,
+            (_, unchecked) => Redundancy::ButFor(unchecked),
+        }
     }
 
     /// Whether chi^2 is smaller than chance allows: the stated uncertainties are too large then.
     pub fn chi_squared_is_small(&self) -> bool {
-        let checked = self.validity.as_ref().filter(|_| self.is_checked());
-        checked.is_some_and(|validity| Level::Real.is_passed_by(1.0 - validity.probability))
+        let validity = self.validity.as_ref().filter(|_| self.fit.degrees_of_freedom > 0);
+        validity.is_some_and(|validity| Level::Real.is_passed_by(1.0 - validity.probability))
     }
 }

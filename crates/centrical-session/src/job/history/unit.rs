@@ -116,10 +116,11 @@ pub fn unit_history(
         parameter.step = parameter.step.filter(|_| parameter.drifts || parameter.scatters);
     }
     let readings = job.readings();
-    // Of some readings alone a day would pass for that of all.
+    // Of some readings alone a day would pass for that of all. Sessions of a single day show no drift, and say nothing of later days.
     let are_all = readings.len() == READINGS;
+    let shows_drift = has_days || !request.trend;
     let due = readings.iter().filter_map(|r| r.due.as_ref()).min_by_key(|due| due.date).cloned();
-    let due = due.filter(|due| are_all || due.date <= on);
+    let due = due.filter(|due| (are_all && shows_drift) || due.date <= on);
     Some(UnitHistoryReport {
         schema: UNIT_HISTORY_SCHEMA,
         program: Program::this(),
@@ -140,13 +141,13 @@ pub fn unit_history(
         limit: request.limit,
         is_within: request
             .limit
-            .filter(|_| are_all || due.is_some())
+            .filter(|_| (are_all && (shows_drift || on == last.date)) || due.is_some())
             .map(|_| due.as_ref().is_none_or(|due| due.date > on)),
         on,
         // A station may be east of here.
         ahead: last.date > Date::today().after(1.0),
         due,
-        due_after: request.limit.filter(|_| are_all).map(|_| last.date.after(HORIZON * DAYS_IN_YEAR)),
+        due_after: request.limit.filter(|_| are_all && shows_drift).map(|_| last.date.after(HORIZON * DAYS_IN_YEAR)),
         readings,
     })
 }
