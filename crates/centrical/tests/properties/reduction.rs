@@ -28,6 +28,7 @@ fn kinds() -> Vec<(&'static str, Stream)> {
         ("slow ramps", Stream { ramp: 30.0, rate: 200.0, lengths: lengths(60.0), ..base.clone() }.rough()),
         ("poor unit", Stream { unit_error: 1e-2, ..base.clone() }.rough()),
         ("slow speeds", Stream { omegas: vec![0.0, 3.0, 6.0, 9.0, 4.5, 0.0], lengths: lengths(20.0), ..base.clone() }),
+        ("less than two revolutions", Stream { omegas: vec![0.0, 1.05, 6.0, 9.0, 3.0, 0.0], ..base.clone() }),
         ("below twice the revolution", Stream { rate: 13.0, lengths: lengths(30.0), ..base }.rough()),
     ]
 }

@@ -3,7 +3,7 @@ use std::f64::consts::TAU;
 use centrical::ThirdPosition::{AxisOneDown, AxisOneUp};
 use centrical::reduction::Record;
 use centrical::simulate::{Equipment, Machine, Recorder, Simulation, SimulationError, Tachometer};
-use centrical::{ArmMotion, Experiment, Group, MeasurementModel, PairRelation, SetPoint, Site, rotation};
+use centrical::{ArmMotion, Experiment, Group, MeasurementModel, PairRelation, Parameter, SetPoint, Site, rotation};
 use nalgebra::Vector3;
 
 use crate::common::{Random, everything, experiment, kozlov, truth};
@@ -50,7 +50,10 @@ fn mean_of_a_record_is_the_reading() {
             let set_point = SetPoint { omega: sense * set_point.omega, ..*set_point };
             let mut one = full.experiment().clone();
             one.set_points = vec![set_point];
+            // A second angle of rest, whose tilt differs, is not in it.
             let simulated = everything(one.clone());
+            let value = |parameter: &Parameter| x[full.parameters().find(&parameter.name).unwrap()];
+            let x: Vec<f64> = simulated.parameters().iter().map(value).collect();
             let rate = if set_point.is_rest() { 100.0 } else { STEPS as f64 * set_point.omega.abs() / TAU };
             let equipment = Equipment {
                 machine: Machine { plateau: 40.5 / rate, ..Machine::default() },

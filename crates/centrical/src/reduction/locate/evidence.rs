@@ -32,6 +32,10 @@ pub(super) fn level_width(nominal_z: &Vector3<f64>) -> f64 {
 /// Blocks whose mean is compared with that of as many before: the more, the slower a change is seen.
 const REACH: f64 = 4.0;
 
+/// From so many [`REACH`] on, whole revolutions may reach beyond a plateau from each of its blocks: these may be steady by the shorter reach
+/// instead, as they are unless the axis is tilted.
+const LONG: f64 = 4.0;
+
 /// Noise of a dead channel, over the span of the readings.
 const DEAD: f64 = 1e-9;
 
@@ -51,7 +55,7 @@ pub(super) struct Evidence<'a> {
 /// The evidence for one scheduled plateau.
 pub(super) struct Candidate<'a> {
     evidence: &'a Evidence<'a>,
-    /// Blocks to both sides of one, over whose means the change of level about it is seen.
+    /// Blocks to both sides of one, over whose means the change of level about it is seen: whole revolutions.
     reach: f64,
     nominal_z: Vector3<f64>,
     /// Half-width of the level's density [m/s^2].
@@ -289,6 +293,12 @@ impl Candidate<'_> {
     /// blocks from one on.
     pub fn density(&self, noise: &Vector3<f64>, from: usize, density: &mut [f64]) {
         self.evidence.density_of_change(self.reach, noise, from, density);
+        if self.reach > LONG * REACH {
+            let mut near = [0.0; LAYER];
+            let near = &mut near[..density.len()];
+            self.evidence.density_of_change(REACH, noise, from, near);
+            density.iter_mut().zip(near).for_each(|(density, near)| *density = density.max(*near));
+        }
         self.multiply_by_level(from, density);
         widest(Mixture { share: 1.0 - DISTURBED, x: density });
     }
@@ -319,6 +329,12 @@ impl Candidate<'_> {
         }
     }
 
+    /// The reach by which blocks of a range are compared with others of it: the shorter one where whole revolutions leave it.
+    fn reach_within(&self, range: &Range<usize>) -> f64 {
+        let leaves = self.reach > LONG * REACH && (range.len() as f64) < 3.0 * self.reach;
+        if leaves { REACH } else { self.reach }
+    }
+
     /// Whether the level of a block is more likely the plateau's than any other.
     pub fn has_level(&self, block: usize) -> bool {
         let mut density = [0.0];
@@ -331,7 +347,7 @@ impl Candidate<'_> {
         let white = self.evidence.white(range);
         let mut changes = vec![0.0; range.len()];
         (0..3).all(|axis| {
-            self.evidence.changes(axis, self.reach, range.start, &mut changes);
+            self.evidence.changes(axis, self.reach_within(range), range.start, &mut changes);
             let middle = median(&mut changes.clone());
             let mut sizes: Vec<f64> = changes.iter().map(|change| (change - middle).abs()).collect();
             middle.abs() <= (MAD * median(&mut sizes)).max(white[axis])
@@ -343,7 +359,7 @@ impl Candidate<'_> {
         let white = self.evidence.white(range);
         let mut sizes = vec![0.0; range.len()];
         Vector3::from_fn(|axis, _| {
-            self.evidence.changes(axis, self.reach, range.start, &mut sizes);
+            self.evidence.changes(axis, self.reach_within(range), range.start, &mut sizes);
             for change in &mut sizes {
                 *change = change.abs();
             }
