@@ -11,7 +11,6 @@ use super::experiment::{Experiment, PairRelation, STANDARD_GRAVITY, Site};
 use super::group::Group;
 use super::kind::Kind;
 use super::parameter::{Parameter, coefficient, parameter};
-use super::position::Position;
 
 /// Unknowns beyond the source's 49, each off by default.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -199,14 +198,7 @@ impl Extension {
                     effect(name, "rad", Group::MountingTilt, Effect::MountingTilt { axis, mounting }, 1e-3)
                 },
             ),
-            Self::AngleTilt => {
-                let further = experiment.rest_angles().into_iter().enumerate().skip(1);
-                let tilt = |axis: usize, n: usize, first: usize| {
-                    let name = format!("angle_tilt_{}[{}]", axis + 1, n + 1);
-                    effect(name, "rad", Group::AngleTilt, Effect::AngleTilt { axis, first }, 1e-3)
-                };
-                further.flat_map(|(n, first)| [0, 1].map(|axis| tilt(axis, n, first))).collect()
-            }
+            Self::AngleTilt => angle_tilts(experiment),
             Self::MountingBias => by_mounting(experiment, 3, |_, _| true, mounting_bias),
             Self::MountingScale => by_mounting(experiment, 3, |_, _| true, mounting_scale),
             Self::RestsBias => of_rests(experiment, error_model, "rests_bias", |monomial, _| monomial.degree() == 0),
@@ -214,25 +206,8 @@ impl Extension {
                 of_rests(experiment, error_model, "rests_scale", |monomial, axis| *monomial == Monomial::power(axis, 1))
             }
             Self::RestsUnit => of_rests(experiment, error_model, "rests_unit", |monomial, _| monomial.degree() == 1),
-            Self::RestsTilt => {
-                let known = experiment.positions.iter().enumerate().filter(|(_, p)| p.attitude_uncertainty.is_some());
-                let tilt = |axis: usize, position: usize, id: &str| {
-                    let name = format!("rest_tilt_{}[{id}]", axis + 1);
-                    effect(name, "rad", Group::Attitude, Effect::RestTilt { axis, position }, 1e-3)
-                };
-                known.flat_map(|(k, position)| [0, 1].map(|axis| tilt(axis, k, &position.id))).collect()
-            }
-            Self::AttitudesTilt => {
-                let positions = &experiment.positions;
-                let shared_by = |first: &Position| positions.iter().filter(|p| p.shares_attitude(first)).count();
-                let is_first = |k: usize| !positions[..k].iter().any(|p| p.shares_attitude(&positions[k]));
-                let firsts = (0..positions.len()).filter(|&k| is_first(k) && shared_by(&positions[k]) > 1);
-                let tilt = |axis: usize, first: usize| {
-                    let name = format!("attitude_tilt_{}[{}]", axis + 1, positions[first].id);
-                    effect(name, "rad", Group::Attitude, Effect::AttitudeTilt { axis, first }, 1e-3)
-                };
-                firsts.flat_map(|k| [0, 1].map(|axis| tilt(axis, k))).collect()
-            }
+            Self::RestsTilt => rest_tilts(experiment),
+            Self::AttitudesTilt => attitude_tilts(experiment),
             Self::SpinTurn => by_position(experiment, |axis, position, id| {
                 let name = format!("spin_turn_{}[{id}]", axis + 1);
                 effect(name, "rad", Group::SpinTurn, Effect::SpinTurn { axis, position }, 1e-3)
@@ -312,6 +287,40 @@ fn of_rests(
     };
     let numbers = experiment.other_switch_ons().into_iter().map(|switch_on| switch_on.number);
     numbers.flat_map(|number| terms.iter().map(move |term| unknown(number, term))).collect()
+}
+
+/// Two tilts at every angle of rest but the first.
+fn angle_tilts(experiment: &Experiment) -> Vec<Parameter> {
+    let tilt = |axis: usize, (n, first): (usize, usize)| {
+        let name = format!("angle_tilt_{}[{}]", axis + 1, n + 1);
+        effect(name, "rad", Group::AngleTilt, Effect::AngleTilt { axis, first }, 1e-3)
+    };
+    let further = experiment.rest_angles().into_iter().enumerate().skip(1);
+    further.flat_map(|angle| [0, 1].map(|axis| tilt(axis, angle))).collect()
+}
+
+/// Two tilts for each rest in a known attitude.
+fn rest_tilts(experiment: &Experiment) -> Vec<Parameter> {
+    let tilt = |axis: usize, position: usize| {
+        let name = format!("rest_tilt_{}[{}]", axis + 1, experiment.positions[position].id);
+        effect(name, "rad", Group::Attitude, Effect::RestTilt { axis, position }, 1e-3)
+    };
+    let positions = experiment.positions.iter().enumerate();
+    let known = positions.filter(|(_, position)| position.attitude_uncertainty.is_some());
+    known.flat_map(|(k, _)| [0, 1].map(|axis| tilt(axis, k))).collect()
+}
+
+/// Two tilts for each known attitude of several rests.
+fn attitude_tilts(experiment: &Experiment) -> Vec<Parameter> {
+    let positions = &experiment.positions;
+    let tilt = |axis: usize, first: usize| {
+        let name = format!("attitude_tilt_{}[{}]", axis + 1, positions[first].id);
+        effect(name, "rad", Group::Attitude, Effect::AttitudeTilt { axis, first }, 1e-3)
+    };
+    let stated: Vec<usize> = (0..positions.len()).filter(|&k| positions[k].attitude_uncertainty.is_some()).collect();
+    let shares = |k: usize, others: &[usize]| others.iter().any(|&n| positions[n].shares_attitude(&positions[k]));
+    let firsts = (0..stated.len()).filter(|&i| !shares(stated[i], &stated[..i]) && shares(stated[i], &stated[i + 1..]));
+    firsts.flat_map(|i| [0, 1].map(|axis| tilt(axis, stated[i]))).collect()
 }
 
 /// Typical magnitude of a bias [m/s^2].

@@ -784,7 +784,7 @@ fn faces_that_are_off_in_each_visit_are_named() {
     let mut named = 0;
     for _ in 0..RUNS {
         let mut normal = |size: f64| Vector3::from_fn(|_, _| size * random.normal());
-        let up = |face: usize| Vector3::ith(face / 2, if face % 2 == 0 { 1.0 } else { -1.0 });
+        let up = |face: usize| Vector3::ith(face / 2, if face.is_multiple_of(2) { 1.0 } else { -1.0 });
         let turn = Rotation3::from_scaled_axis(normal(0.01));
         let of_faces: [Vector3<f64>; 6] =
             std::array::from_fn(|face| turn * (Rotation3::from_scaled_axis(normal(5.0 * STATED)) * up(face)) * GRAVITY);
