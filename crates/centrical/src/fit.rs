@@ -15,8 +15,8 @@
 //! so far. Directions beyond [`NULL_HOLD`](crate::NULL_HOLD) along which it is not are held as well, to find a point where it can be
 //! linearised. The estimates are one linear step on from there, without that hold: it informs none of them.
 //!
-//! A first reading can leave out `curvature.rs`, which acts with priors and free attitudes alone, and `linalg/elimination.rs`, which
-//! gives the numbers of `linalg/least_squares.rs` in less time.
+//! A first reading can leave out `curvature.rs`, which acts with priors and free attitudes alone, and the elimination in
+//! `linalg/least_squares.rs`, which gives the same numbers in less time.
 //!
 //! **Priors** of the model are rows of the design like any other; the fit says what rests on them.
 

@@ -5,8 +5,7 @@ use nalgebra::{DMatrix, DVector};
 use super::data::{Data, Design};
 use super::departure::departs;
 use super::filter;
-use crate::linalg::elimination::Own;
-use crate::linalg::least_squares::LeastSquares;
+use crate::linalg::least_squares::{LeastSquares, Own};
 use crate::model::{FitError, Linearisation, NULL_HOLD, Prior};
 use crate::observability::Observability;
 

@@ -8,7 +8,7 @@ use super::experiment::SetPoint;
 use super::measurement::MeasurementModel;
 use super::parameters::OfPosition;
 use super::prior::Prior;
-use crate::linalg::elimination::Own;
+use crate::linalg::least_squares::Own;
 
 impl MeasurementModel {
     /// The attitudes of rests in free positions that one of the plateaus `set_points` is in. Equations are three per plateau, then those of

@@ -7,7 +7,7 @@ use nalgebra::{DMatrix, DVector, RowDVector, SVD};
 use super::combination::Combination;
 use super::correlation::{self, CorrelatedGroup};
 use super::direction::{self, NullDirection, TAKES_PART};
-use crate::linalg::elimination::{Elimination, Own};
+use crate::linalg::least_squares::{Elimination, Own};
 
 /// A singular value within this factor of the tolerance makes the rank doubtful.
 const DOUBTFUL: f64 = 100.0;
