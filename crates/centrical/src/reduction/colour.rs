@@ -2,7 +2,6 @@
 
 mod alike;
 mod contrasts;
-mod likelihood;
 mod markov;
 mod noise_model;
 mod posterior;

@@ -12,8 +12,7 @@ use nalgebra::{Matrix3, Vector3};
 use rayon::prelude::*;
 
 use super::alike::{Alike, Class};
-use super::contrasts::{Group, OfPlateau, contrasts, grouped, own_scale};
-use super::likelihood::{Fit, STEPS};
+use super::contrasts::{Fit, Group, OfPlateau, contrasts, count, grouped, own_scale};
 use super::markov::{Markov, gain};
 use super::posterior::{Mixture, Power, posterior};
 use crate::reduction::average::{CELLS, PlateauFit, ReducedMounting, Weights};
@@ -61,7 +60,7 @@ impl NoiseModel {
         let times = correlation_times(&plateaus);
         let contrasts = contrasts(&plateaus, &times);
         let groups = grouped(&contrasts);
-        let Some(fit) = likeliest(&groups, &times, ENTRIES) else { return Self::of(Vec::new(), &plateaus) };
+        let Some(fit) = Fit::likeliest(&groups, times.len(), ENTRIES) else { return Self::of(Vec::new(), &plateaus) };
         let by_class = noise_by_class(&fit, &groups, &plateaus, &contrasts, &times);
         Self { by_class, ..Self::of(components(&fit, &times), &plateaus) }
     }
@@ -198,7 +197,10 @@ fn noise_by_class(
         if gain(usize::MAX).max(gain(LOWEST)) <= least {
             return None;
         }
-        let fits = grouped.par_iter().map(|groups| likeliest(groups, times, ENTRIES)).collect::<Option<Vec<Fit>>>()?;
+        let fits = grouped
+            .par_iter()
+            .map(|groups| Fit::likeliest(groups, times.len(), ENTRIES))
+            .collect::<Option<Vec<Fit>>>()?;
         let gain = fits.iter().map(criterion).sum::<f64>() - of_all;
         let noise = classes.into_keys().zip(fits.iter().map(|fit| components(fit, times))).collect();
         (gain > 0.0).then_some((gain, (alike, noise)))
@@ -210,10 +212,6 @@ fn noise_by_class(
 /// Groups of the lowest three octaves, four each, where a mean feels the noise.
 const LOWEST: usize = 12;
 
-fn count(groups: &[Group]) -> f64 {
-    groups.iter().map(|group| group.count).sum()
-}
-
 fn density(components: &[Component], f: f64) -> Matrix3<f64> {
     let of = |component: &Component| {
         let x = component.correlation_time.map_or(0.0, |tau| TAU * f * tau);
@@ -222,30 +220,9 @@ fn density(components: &[Component], f: f64) -> Matrix3<f64> {
     components.iter().map(of).sum()
 }
 
-/// The fit of the contrasts by components, added one by one as long as Schwarz's criterion accepts the `entries` of each. `None` without
-/// contrasts.
-fn likeliest(groups: &[Group], times: &[f64], entries: f64) -> Option<Fit> {
-    let contrasts = count(groups);
-    if contrasts == 0.0 {
-        return None;
-    }
-    let penalty = 0.5 * entries * contrasts.ln();
-    let mut fit = Fit::white(groups);
-    loop {
-        let best = fit.with_best_time(times.len(), groups);
-        if best.likelihood > fit.likelihood + penalty {
-            fit = best;
-        } else {
-            break;
-        }
-    }
-    fit.climb(groups, STEPS.1);
-    Some(fit)
-}
-
 /// The components of the likeliest fit; none without contrasts.
 fn likeliest_components(groups: &[Group], times: &[f64], entries: f64) -> Vec<Component> {
-    likeliest(groups, times, entries).map_or_else(Vec::new, |fit| components(&fit, times))
+    Fit::likeliest(groups, times.len(), entries).map_or_else(Vec::new, |fit| components(&fit, times))
 }
 
 fn components(fit: &Fit, times: &[f64]) -> Vec<Component> {
