@@ -16,7 +16,7 @@ use super::record::RecordSlice;
 use super::survey::Blocks;
 use super::triangle::Triangle;
 use crate::model::Position;
-pub(super) use cells::{Cells, Weights};
+pub(super) use cells::{Cells, Markov, Weights};
 pub(super) use samples::CELLS;
 use samples::Samples;
 use saturation::{may_be_piled_up, piled_up};

@@ -1,8 +1,6 @@
 //! The colour of the noise, and the covariances that it gives the means.
 
-mod alike;
 mod contrasts;
-mod markov;
 mod noise_model;
 mod posterior;
 

@@ -1,10 +1,12 @@
-//! A window's residuals and design summed over equal cells of time: all that the slow part of the noise needs.
+//! A window's residuals and design summed over equal cells of time: all that the slow part of the noise needs. Functionals of the readings,
+//! and their variances under the components of the noise.
 
 use nalgebra::Vector3;
+use pulp::{Simd, WithSimd};
 
 use super::samples::CELLS;
 use super::strips::Sums;
-use crate::reduction::simd::lanes::product as dot;
+use crate::reduction::simd::lanes::{dot, product, widest};
 use crate::reduction::triangle::{TERMS, Triangle};
 
 /// Sums over the good samples of each cell.
@@ -60,9 +62,9 @@ impl Cells {
     /// The part of a slow function of time, one value a cell, that the fit does not absorb: as weights, and its product
     /// with the readings.
     pub fn contrast(&self, function: &[f64]) -> (Weights, Vector3<f64>) {
-        let fitted: Vec<f64> = self.q.iter().map(|q| dot(q, function)).collect();
+        let fitted: Vec<f64> = self.q.iter().map(|q| product(q, function)).collect();
         let mut by_cell: Vec<f64> = function.iter().zip(&self.counts).map(|(v, n)| v * n).collect();
-        let squares = dot(&by_cell, function) - dot(&fitted, &fitted);
+        let squares = product(&by_cell, function) - product(&fitted, &fitted);
         for (q, fitted) in self.q.iter().zip(&fitted) {
             by_cell.iter_mut().zip(q).for_each(|(w, q)| *w -= q * fitted);
         }
@@ -74,7 +76,7 @@ impl Cells {
     /// one value a cell.
     pub fn free_of(&self, function: &[f64], other: &[f64]) -> Vec<f64> {
         let (weights, _) = self.contrast(other);
-        let share = dot(&weights.by_cell, function) / weights.squares;
+        let share = product(&weights.by_cell, function) / weights.squares;
         // A function that the fit absorbs wholly has no contrast.
         let share = if share.is_finite() { share } else { 0.0 };
         function.iter().zip(other).map(|(f, o)| f - share * o).collect()
@@ -89,5 +91,70 @@ impl Cells {
         let (weights, product) = self.contrast(&time);
         let by_cell = weights.by_cell.iter().map(|w| w / weights.squares).collect();
         (Weights { by_cell, squares: 1.0 / weights.squares }, product / weights.squares)
+    }
+
+    /// Variance of a functional under a component of unit density.
+    ///
+    /// White: `sum w^2 / interval`. Markov: `sum_ab w_a w_b exp(-|t_a - t_b| / tau) / (2 tau)` over cells, by a recursion.
+    pub fn gain(&self, correlation_time: Option<f64>, weights: &Weights) -> f64 {
+        let Some(tau) = correlation_time else { return weights.squares / self.interval };
+        Markov::new(&[tau], self.width).gains(weights)[0]
+    }
+}
+
+/// Markov processes of several correlation times, over cells of one width.
+pub(in crate::reduction) struct Markov {
+    /// Correlation from one cell to the next.
+    decay: Vec<f64>,
+    /// Mean correlation inside a cell, over twice the correlation time.
+    within: Vec<f64>,
+    /// Mean correlation between neighbouring cells, over the correlation time.
+    between: Vec<f64>,
+}
+
+impl Markov {
+    /// Of these correlation times, over cells of a width [s].
+    pub fn new(times: &[f64], width: f64) -> Self {
+        let of = |law: fn(f64) -> f64| times.iter().map(|tau| law(width / tau) / tau).collect();
+        Self {
+            decay: times.iter().map(|tau| (-width / tau).exp()).collect(),
+            within: of(|x| (x - 1.0 + (-x).exp()) / (x * x)),
+            // By its own exponential: the sinh of cells that are a thousand correlation times wide overflows.
+            between: of(|x| (-(-x).exp_m1() / x).powi(2)),
+        }
+    }
+
+    /// Variances of a functional under each process of unit density.
+    pub fn gains(&self, weights: &Weights) -> Vec<f64> {
+        widest(Gains { markov: self, weights })
+    }
+}
+
+/// Variances of a functional under Markov processes of unit density.
+struct Gains<'a> {
+    markov: &'a Markov,
+    weights: &'a Weights,
+}
+
+impl WithSimd for Gains<'_> {
+    type Output = Vec<f64>;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> Vec<f64> {
+        let Markov { decay, within, between } = self.markov;
+        let by_cell = &self.weights.by_cell;
+        let mut past = vec![0.0; decay.len()];
+        let mut products = past.clone();
+        for w in by_cell {
+            for ((past, product), decay) in past.iter_mut().zip(&mut products).zip(decay) {
+                *product += w * *past;
+                *past = decay * *past + w;
+            }
+        }
+        let squares = dot(simd, by_cell, by_cell);
+        for ((product, within), between) in products.iter_mut().zip(within).zip(between) {
+            *product = within * squares + between * *product;
+        }
+        products
     }
 }

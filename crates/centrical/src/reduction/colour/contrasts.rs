@@ -9,9 +9,8 @@ use std::f64::consts::PI;
 use nalgebra::{Matrix3, Vector3};
 use rayon::prelude::*;
 
-use super::markov::{Markov, gain};
 use super::posterior::Power;
-use crate::reduction::average::{CELLS, PlateauFit, Weights};
+use crate::reduction::average::{CELLS, Markov, PlateauFit, Weights};
 use crate::reduction::locate::TURNING;
 use crate::statistics::{chi_squared_tail, whole};
 
@@ -123,7 +122,7 @@ impl Contrast {
         let cells = &plateau.cells;
         let (weights, y) = cells.contrast(function);
         let y = plateau.noise_axes * y;
-        let white = gain(None, &weights, cells);
+        let white = cells.gain(None, &weights);
         let gains = || markov.gains(&weights).into_iter().map(|gain| gain / white).collect();
         (white > 0.0).then(|| Self { power: y * y.transpose() / white, gains: gains() })
     }

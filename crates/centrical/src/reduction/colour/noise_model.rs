@@ -11,11 +11,9 @@ use std::f64::consts::{SQRT_2, TAU};
 use nalgebra::{Matrix3, Vector3};
 use rayon::prelude::*;
 
-use super::alike::{Alike, Class};
 use super::contrasts::{Fit, Group, OfPlateau, contrasts, count, grouped, own_scale};
-use super::markov::{Markov, gain};
 use super::posterior::{Mixture, Power, posterior};
-use crate::reduction::average::{CELLS, PlateauFit, ReducedMounting, Weights};
+use crate::reduction::average::{CELLS, Markov, PlateauFit, ReducedMounting, Weights};
 
 /// Noise of a unit, which gives the covariance of a mean.
 #[derive(Debug, Clone, PartialEq)]
@@ -45,6 +43,27 @@ struct Component {
     correlation_time: Option<f64>,
     /// Two-sided spectral density at zero frequency [m^2/s^4/Hz].
     density: Matrix3<f64>,
+}
+
+/// What distinguishes plateaus whose noise is not alike.
+///
+/// Drives and bearings shake an arm more the faster it turns, and what jitters in the speed or in the scale of a unit acts along the specific
+/// force. So the noise may be that of the speed, or that of the speed and of the axis on which most of the force acts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Alike {
+    /// By their speeds.
+    Speed,
+    /// By their speeds and the axis on which most of the specific force acts.
+    SpeedAndForce,
+}
+
+/// A class of plateaus with noise of its own.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+struct Class {
+    /// Speed in parts of an octave; `None` at rest.
+    speed: Option<i32>,
+    /// Axis on which most of the force acts, where it counts.
+    axis: Option<usize>,
 }
 
 impl NoiseModel {
@@ -132,7 +151,7 @@ impl NoiseModel {
         let cells = &plateau.cells;
         let time = |part: &Component| if plateau.turns() { None } else { part.correlation_time };
         let of = |components: &[Component]| -> Matrix3<f64> {
-            components.iter().map(|part| part.density * gain(time(part), weights, cells)).sum()
+            components.iter().map(|part| part.density * cells.gain(time(part), weights)).sum()
         };
         let mut covariance = of(components);
         if let Some(along) = &self.along {
@@ -156,9 +175,9 @@ impl NoiseModel {
         for plateau in &plateaus {
             let (cells, weights) = (&plateau.cells, plateau.cells.mean_weights());
             let share = 1.0 / (self.covariance(&weights, plateau)[(2, 2)] * plateaus.len() as f64);
-            white += share * gain(None, &weights, cells);
+            white += share * cells.gain(None, &weights);
             let gains = if plateau.turns() {
-                vec![gain(None, &weights, cells); times.len()]
+                vec![cells.gain(None, &weights); times.len()]
             } else {
                 Markov::new(times, cells.width).gains(&weights)
             };
@@ -231,6 +250,32 @@ fn components(fit: &Fit, times: &[f64]) -> Vec<Component> {
         density: *density,
     };
     fit.parts.iter().map(part).collect()
+}
+
+/// Speeds within a fiftieth of each other are one.
+const PER_OCTAVE: f64 = 32.0;
+
+impl Alike {
+    /// The class of a plateau.
+    #[expect(clippy::cast_possible_truncation)]
+    fn class(self, plateau: &PlateauFit) -> Class {
+        let omega = plateau.shape.omega.abs();
+        let speed = (omega > 0.0).then(|| (omega.log2() * PER_OCTAVE).round() as i32);
+        let axis = match self {
+            Self::Speed => None,
+            Self::SpeedAndForce => Some(plateau.mean.iamax()),
+        };
+        Class { speed, axis }
+    }
+
+    /// Indices of the plateaus of each class.
+    fn classes(self, plateaus: &[&PlateauFit]) -> BTreeMap<Class, Vec<usize>> {
+        let mut classes = BTreeMap::<Class, Vec<usize>>::new();
+        for (index, plateau) in plateaus.iter().enumerate() {
+            classes.entry(self.class(plateau)).or_default().push(index);
+        }
+        classes
+    }
 }
 
 impl Along {
