@@ -1,11 +1,9 @@
 //! Second pass: the mean of each plateau from the samples of its window, a part at a time.
 
 mod cells;
+mod doubtful;
 mod samples;
-mod saturation;
 mod strips;
-mod stuck;
-mod tail;
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -17,9 +15,9 @@ use super::survey::Blocks;
 use super::triangle::Triangle;
 use crate::model::Position;
 pub(super) use cells::{Cells, Markov, Weights};
+use doubtful::{may_be_piled_up, piled_up};
 pub(super) use samples::CELLS;
 use samples::Samples;
-use saturation::{may_be_piled_up, piled_up};
 use strips::{Fitted, Strips};
 
 /// The average of a plateau whose samples are added part by part, in the order of time. Little of a judged part is kept.

@@ -6,8 +6,7 @@ use std::ops::Range;
 
 use nalgebra::Vector3;
 
-use super::saturation::standing;
-use super::tail::Side;
+use super::doubtful::{Side, standing};
 use crate::reduction::error::ReductionError;
 use crate::reduction::locate::{Shape, Window};
 use crate::reduction::plateau::LeftOut;

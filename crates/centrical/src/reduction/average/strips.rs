@@ -5,9 +5,8 @@ use std::ops::Range;
 use nalgebra::Vector3;
 use pulp::{Simd, WithSimd};
 
+use super::doubtful::{longest_run, may_be_longer, stuck_on_any_axis, widened};
 use super::samples::Samples;
-use super::stuck::{longest_run, may_be_longer, stuck_on_any_axis};
-use super::tail::widened;
 use crate::reduction::simd::lanes::{dot, largest, range, subtract, widest};
 use crate::reduction::triangle::{TERMS, Triangle};
 
