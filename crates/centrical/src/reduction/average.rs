@@ -132,10 +132,10 @@ impl<'a> Averaging<'a> {
         let mut strips = Strips::of(&samples, std::mem::take(&mut self.fitted));
         let so_far = self.fit.take().map(|(_, coefficients)| coefficients);
         let mut fit = self.fit_from(&samples, &mut strips, &so_far.unwrap_or_else(|| samples.fit_of_medians()));
-        if strips.rejects_in_steps() {
+        if strips.rejects_a_tone() {
             // A tone at half the sampling rate has two levels and the median takes one, at a third two of three: the mean is between them.
             strips.take_all();
-            let (_, of_all) = strips.solve().ok_or_else(|| self.singular(samples.len()))?;
+            let (_, of_all) = strips.fitted.solve().ok_or_else(|| self.singular(samples.len()))?;
             fit = self.fit_from(&samples, &mut strips, &of_all);
         }
         let mut fit = fit?;
@@ -146,7 +146,7 @@ impl<'a> Averaging<'a> {
         check_range(&samples, &strips, self.index)?;
         self.left_out += samples.left_out(self.last, samples.len() - strips.good(), strips.stuck_and_unreadable());
         self.last = samples.t.last().copied();
-        self.fitted = strips.into_fitted();
+        self.fitted = strips.fitted;
         Ok(())
     }
 
@@ -164,7 +164,7 @@ impl<'a> Averaging<'a> {
             if 2 * good <= samples.len() {
                 return Err(samples.unsteady(self.index, good));
             }
-            let (triangle, coefficients) = strips.solve().ok_or_else(|| self.singular(samples.len()))?;
+            let (triangle, coefficients) = strips.fitted.solve().ok_or_else(|| self.singular(samples.len()))?;
             if !strips.judge(&coefficients, once_out) {
                 return Ok((triangle, coefficients));
             }

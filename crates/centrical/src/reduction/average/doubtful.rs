@@ -6,6 +6,7 @@
 //!   off about as an exponential does: of `n` readings on one side of the fit, `m` beyond half the limit, no more than `m^2/n` are expected
 //!   beyond the limit (the survival of a log-concave law is log-concave). Spikes are more than that. Beside few spikes the limit grows little,
 //!   since it follows from `n` and `m`: they stay out.
+//! - **A tone**: samples that a fit rejects at equal distances.
 //! - **Piled up**: readings at the end of their range.
 
 use std::ops::Range;
@@ -60,6 +61,14 @@ pub(super) fn standing(f: &[f64]) -> (f64, usize) {
     let mut values: Vec<f64> = f.iter().copied().filter(|value| value.is_finite()).collect();
     values.sort_by(f64::total_cmp);
     values.chunk_by(f64::eq).map(|same| (same[0], same.len())).max_by_key(|same| same.1).unwrap_or((f64::NAN, 0))
+}
+
+/// Whether nearly all of some samples are at one distance from the one before: that is a tone, and no spikes.
+pub(super) fn is_tone(samples: &[usize]) -> bool {
+    let mut steps: Vec<usize> = samples.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    steps.sort_unstable();
+    let commonest = steps.chunk_by(usize::eq).max_by_key(|same| same.len());
+    commonest.is_some_and(|same| same[0] > 1 && 5 * same.len() >= 4 * steps.len())
 }
 
 /// Readings on one side of a fit.

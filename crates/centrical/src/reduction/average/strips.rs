@@ -5,7 +5,7 @@ use std::ops::Range;
 use nalgebra::Vector3;
 use pulp::{Simd, WithSimd};
 
-use super::doubtful::{longest_run, may_be_longer, stuck_on_any_axis, widened};
+use super::doubtful::{is_tone, longest_run, may_be_longer, stuck_on_any_axis, widened};
 use super::samples::Samples;
 use crate::reduction::simd::lanes::{dot, largest, range, subtract, widest};
 use crate::reduction::triangle::{TERMS, Triangle};
@@ -19,7 +19,7 @@ pub(super) struct Strips<'a> {
     /// The stuck samples, if any.
     stuck: Option<Vec<bool>>,
     /// With the strips of the parts before, which are fitted together with these.
-    fitted: Fitted,
+    pub fitted: Fitted,
     /// The first of this part.
     first: usize,
     /// Limits over those of the samples: wider for the tail of the noise.
@@ -104,7 +104,7 @@ impl<'a> Strips<'a> {
         let longest = samples.repeat_rate.map(|rate| longest_run(samples.len(), rate));
         let mut may_be_stuck = false;
         strips.each(|strip, strips, room| {
-            widest(Orthogonalisation { strip, strips, room });
+            widest(Work { strip, strips, fit: None, room });
             // Checked while the readings are in the cache.
             may_be_stuck =
                 may_be_stuck || (0..3).any(|axis| may_be_longer(&samples.f_z[axis], &strip.range, longest[axis]));
@@ -113,16 +113,6 @@ impl<'a> Strips<'a> {
             strips.stuck = stuck_on_any_axis(samples.f_z.each_ref().map(|f| &**f), &longest);
         }
         strips
-    }
-
-    /// The strips of the judged samples.
-    pub fn into_fitted(self) -> Fitted {
-        self.fitted
-    }
-
-    /// The fit of this part and those before.
-    pub fn solve(&self) -> Option<(Triangle, Vec<Vector3<f64>>)> {
-        self.fitted.solve()
     }
 
     /// Judges the samples by a fit whose last terms have these coefficients; true if the set of good samples changed. With
@@ -149,23 +139,15 @@ impl<'a> Strips<'a> {
         self.judge_within([f64::MAX; 3], &nothing, false);
     }
 
-    /// Whether a fifth of the samples or more are rejected, nearly all of them at one distance from the one before: that is a tone, and no
-    /// spikes.
-    pub fn rejects_in_steps(&self) -> bool {
-        if 5 * (self.samples.len() - self.good()) < self.samples.len() {
-            return false;
-        }
-        let bad: Vec<usize> = self.bad().collect();
-        let mut steps: Vec<usize> = bad.windows(2).map(|pair| pair[1] - pair[0]).collect();
-        steps.sort_unstable();
-        let commonest = steps.chunk_by(usize::eq).max_by_key(|same| same.len());
-        commonest.is_some_and(|same| same[0] > 1 && 5 * same.len() >= 4 * steps.len())
+    /// Whether a fifth of the samples or more are rejected, by the steps of a tone.
+    pub fn rejects_a_tone(&self) -> bool {
+        5 * (self.samples.len() - self.good()) >= self.samples.len() && is_tone(&self.bad().collect::<Vec<usize>>())
     }
 
     fn judge_within(&mut self, limits: [f64; 3], coefficients: &[Vector3<f64>], once_out: bool) -> bool {
         let fit = Fit { coefficients: self.fitted.less_reference(coefficients), limits, once_out };
         let mut changed = false;
-        self.each(|strip, strips, room| changed |= widest(Judgement { strip, strips, fit: &fit, room }));
+        self.each(|strip, strips, room| changed |= widest(Work { strip, strips, fit: Some(&fit), room }));
         changed
     }
 
@@ -268,36 +250,24 @@ impl Fitted {
     }
 }
 
-/// A strip to be fitted on its own.
-struct Orthogonalisation<'a> {
+/// A strip to be judged by a fit, or without one to be fitted on its own. The output is whether the set of good samples changed.
+struct Work<'a> {
     strip: &'a mut Strip,
     strips: &'a Strips<'a>,
+    fit: Option<&'a Fit>,
     room: &'a mut Room,
 }
 
-impl WithSimd for Orthogonalisation<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) {
-        self.strip.orthogonalise(simd, self.strips, self.room);
-    }
-}
-
-/// A strip to be judged.
-struct Judgement<'a> {
-    strip: &'a mut Strip,
-    strips: &'a Strips<'a>,
-    fit: &'a Fit,
-    room: &'a mut Room,
-}
-
-impl WithSimd for Judgement<'_> {
+impl WithSimd for Work<'_> {
     type Output = bool;
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> bool {
         let Self { strip, strips, fit, room } = self;
+        let Some(fit) = fit else {
+            strip.orthogonalise(simd, strips, room);
+            return false;
+        };
         !strip.is_within(strips, fit) && strip.judge(simd, strips, fit, room)
     }
 }
