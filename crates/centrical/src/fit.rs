@@ -20,7 +20,7 @@
 //!
 //! **Priors** of the model are rows of the design like any other; the fit says what rests on them.
 
-mod batch;
+pub(crate) mod batch;
 pub(crate) mod calibration;
 mod convergence;
 mod curvature;

@@ -34,6 +34,7 @@ mod tilt;
 mod validity;
 mod verdict;
 
+pub use crate::fit::batch::FitMethod;
 pub use crate::statistics::{chi_squared_tail, family_wise};
 pub use axes::{ModelInAxes, ScaleForm};
 pub use between_rests::BetweenRests;
@@ -43,7 +44,7 @@ pub use compensated::{Compensated, CurvePoint};
 pub use coverage::Degrees;
 pub use creep::Creep;
 pub use drift::{PlateauDrift, SessionDrift, Slope};
-pub use monte_carlo::{FitMethod, MonteCarlo, ParameterStatistics, Settings, WeightedSquare};
+pub use monte_carlo::{MonteCarlo, ParameterStatistics, Settings, WeightedSquare};
 pub use pattern::{Pattern, Trend};
 pub use repeats::Repeat;
 pub use rivals::{RivalTest, Rivals, Suspects, Unseen};

@@ -35,21 +35,24 @@ const SETTLED: f64 = 1e-2;
 /// Halvings of a step before it is given up: `2^-30` of a Gauss-Newton step is negligible.
 pub(super) const HALVING_LIMIT: u32 = 30;
 
-impl Structure {
-    /// Weighted least squares on the source's linear model [K5.3], for one of many data sets of the same plateaus.
-    ///
-    /// # Errors
-    /// [`FitError`] when numbers overflow.
-    pub fn linear(&self, data: &Data) -> Result<Fit, FitError> {
-        Ok(Start::new(self, data)?.solve())
-    }
+/// The model that is fitted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum FitMethod {
+    /// The exact one, by Gauss-Newton.
+    Exact,
+    /// The linear one.
+    Linear,
+}
 
-    /// Gauss-Newton on the exact model to convergence, from the linear solution, for one of many data sets of the same plateaus.
+impl Structure {
+    /// The fit of one of many data sets of the same plateaus.
     ///
     /// # Errors
     /// [`FitError`] when numbers overflow.
-    pub fn exact(&self, data: &Data) -> Result<Fit, FitError> {
-        Search::from(Start::new(self, data)?).run(&unwatched)
+    pub fn fit(&self, method: FitMethod, data: &Data) -> Result<Fit, FitError> {
+        let zero = vec![0.0; self.held.typical.len()];
+        let design = self.assembly.design(data, &zero, &self.linearisations)?;
+        Start { data, structure: self, design }.fit(method, &unwatched)
     }
 }
 
@@ -61,27 +64,17 @@ pub(super) struct Start<'a> {
     pub design: Design,
 }
 
-impl<'a> Start<'a> {
-    /// Assembles the equations of `data` at `X = 0` for a structure that is known.
-    fn new(structure: &'a Structure, data: &'a Data<'a>) -> Result<Self, FitError> {
-        let zero = vec![0.0; structure.held.typical.len()];
-        let design = structure.assembly.design(data, &zero, &structure.linearisations)?;
-        Ok(Self { data, structure, design })
-    }
-
-    /// The first step, from zero: every fit of one experiment has the same equations there, and its own misfit.
-    fn step(&self) -> Solution {
-        self.structure.start.solve(self.design.misfit.clone())
-    }
-
-    /// Degrees of freedom left by the estimable combinations. An influence brings an equation and an unknown.
-    fn degrees_of_freedom(&self) -> usize {
-        let rows = 3 * self.data.observations().len() + self.data.model().priors().len();
-        rows.saturating_sub(self.structure.observability.rank())
+impl Start<'_> {
+    /// The fit of a model.
+    pub fn fit(self, method: FitMethod, progress: OnProgress<()>) -> Result<Fit, FitError> {
+        match method {
+            FitMethod::Exact => Search::from(self).run(progress),
+            FitMethod::Linear => Ok(self.linear()),
+        }
     }
 
     /// The linear fit: the residual of `Z - H X`.
-    pub fn solve(self) -> Fit {
+    fn linear(self) -> Fit {
         let held = &self.structure.held;
         let equations = if held.holds(Hold::WEAK) {
             let zero = DVector::zeros(held.typical.len());
@@ -90,29 +83,44 @@ impl<'a> Start<'a> {
             Cow::Borrowed(&self.structure.start)
         };
         let step = equations.solve(self.design.misfit.clone());
-        let parameters = self.data.model().parameters().len();
-        let covariance = equations.covariance();
         let residuals = (self.data.observations().iter())
             .zip(&self.structure.linearisations)
             .map(|(o, l)| o.mean - l.reading - l.change(&step.x))
             .collect();
         let whitened = &self.design.misfit - &self.design.rows * &step.x;
+        let chi_squared = whitened.norm_squared() + self.design.rest.powi(2);
+        self.fitted(&step.x, equations.covariance(), chi_squared, residuals, &self.structure.linearisations)
+    }
+
+    /// The fit with these estimates, by the linearisations that gave them; all else as of a linear one.
+    fn fitted(
+        &self,
+        x: &DVector<f64>,
+        covariance: DMatrix<f64>,
+        chi_squared: f64,
+        residuals: Vec<Vector3<f64>>,
+        linearisations: &[Linearisation],
+    ) -> Fit {
+        let (model, Structure { held, observability, of_data, .. }) = (self.data.model(), self.structure);
+        let parameters = model.parameters().len();
+        // An influence brings an equation and an unknown.
+        let equations = 3 * self.data.observations().len() + model.priors().len();
         Fit {
-            values: step.x.rows(0, parameters).as_slice().to_vec(),
-            deviations: step.x.rows_range(parameters..).as_slice().to_vec(),
-            point: step.x.as_slice().to_vec(),
+            values: x.rows(0, parameters).as_slice().to_vec(),
+            deviations: x.rows_range(parameters..).as_slice().to_vec(),
+            point: x.as_slice().to_vec(),
             curved: DMatrix::zeros(covariance.nrows(), 0),
             covariance,
-            chi_squared: whitened.norm_squared() + self.design.rest.powi(2),
-            degrees_of_freedom: self.degrees_of_freedom(),
+            chi_squared,
+            degrees_of_freedom: equations.saturating_sub(observability.rank()),
             null_directions_held: held.holds(Hold::NULL),
             iterations: 1,
             termination: Termination::Linear,
             residuals,
-            observation_covariances: self.data.covariances(&self.structure.linearisations),
-            observability: self.structure.observability.clone(),
-            of_data: self.structure.of_data.clone(),
-            priors: self.data.model().priors().to_vec(),
+            observation_covariances: self.data.covariances(linearisations),
+            observability: observability.clone(),
+            of_data: of_data.clone(),
+            priors: model.priors().to_vec(),
         }
     }
 }
@@ -121,7 +129,7 @@ impl<'a> Start<'a> {
 type Place = (DVector<f64>, Vec<Linearisation>);
 
 /// The state of the Gauss-Newton iteration.
-pub(super) struct Search<'a> {
+struct Search<'a> {
     start: Start<'a>,
     x: DVector<f64>,
     /// Once the search has ended: `x`, or one linear step on from it where weak directions are held, without their hold.
@@ -143,8 +151,9 @@ pub(super) struct Search<'a> {
 }
 
 impl<'a> Search<'a> {
-    pub fn from(start: Start<'a>) -> Self {
-        let Solution { x, whitened_length } = start.step();
+    fn from(start: Start<'a>) -> Self {
+        // Every fit of one experiment has the same equations at zero, and its own misfit.
+        let Solution { x, whitened_length } = start.structure.start.solve(start.design.misfit.clone());
         Self {
             start,
             estimates: x.clone(),
@@ -161,7 +170,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    pub fn run(mut self, progress: OnProgress<()>) -> Result<Fit, FitError> {
+    fn run(mut self, progress: OnProgress<()>) -> Result<Fit, FitError> {
         while self.is_running() {
             advance(progress, ())?;
             self.linearise()?;
@@ -278,23 +287,14 @@ impl<'a> Search<'a> {
                 *residual -= linearisation.change(&beyond);
             }
         }
-        let parameters = data.model().parameters().len();
+        let (estimates, chi_squared) = (&self.estimates, self.chi_squared(&residuals, &self.estimates)?);
         Ok(Fit {
-            values: self.estimates.rows(0, parameters).as_slice().to_vec(),
-            deviations: self.estimates.rows_range(parameters..).as_slice().to_vec(),
-            chi_squared: self.chi_squared(&residuals, &self.estimates)?,
             point: self.x.as_slice().to_vec(),
-            covariance: self.covariance,
             curved: self.curved,
-            degrees_of_freedom: self.start.degrees_of_freedom(),
             null_directions_held: structure.held.holds(self.hold.of_null()),
             iterations: self.iterations,
             termination: self.termination.unwrap_or(Termination::IterationLimit),
-            residuals,
-            observation_covariances: data.covariances(&self.linearisations),
-            observability: structure.observability.clone(),
-            of_data: structure.of_data.clone(),
-            priors: data.model().priors().to_vec(),
+            ..self.start.fitted(estimates, self.covariance, chi_squared, residuals, &self.linearisations)
         })
     }
 }

@@ -4,7 +4,7 @@ use std::sync::OnceLock;
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::batch::{Search, Start};
+use super::batch::{FitMethod, Start};
 use super::data::Data;
 use super::estimates::Fit;
 use super::gain::Gain;
@@ -36,7 +36,7 @@ impl<'d> Calibration<'d> {
     /// # Errors
     /// As [`Calibration::exact`]; [`FitError::Stopped`].
     pub fn exact_watched(data: &'d Data<'d>, progress: OnProgress<()>) -> Result<Self, FitError> {
-        Self::by(Assembly::Batch, data, |start| Search::from(start).run(progress))
+        Self::by(Assembly::Batch, FitMethod::Exact, data, progress)
     }
 
     /// Weighted least squares on the source's linear model [K5.3].
@@ -44,7 +44,7 @@ impl<'d> Calibration<'d> {
     /// # Errors
     /// As [`Calibration::exact`].
     pub fn linear(data: &'d Data<'d>) -> Result<Self, FitError> {
-        Self::by(Assembly::Batch, data, |start| Ok(start.solve()))
+        Self::by(Assembly::Batch, FitMethod::Linear, data, &unwatched)
     }
 
     /// [`Calibration::exact`] by the iterated filter, in the order of the observations.
@@ -52,7 +52,7 @@ impl<'d> Calibration<'d> {
     /// # Errors
     /// As [`Calibration::exact`].
     pub fn recursive(data: &'d Data<'d>) -> Result<Self, FitError> {
-        Self::by(Assembly::Filter, data, |start| Search::from(start).run(&unwatched))
+        Self::by(Assembly::Filter, FitMethod::Exact, data, &unwatched)
     }
 
     /// [`Calibration::linear`] by one pass of the filter, in the order of the observations.
@@ -60,7 +60,7 @@ impl<'d> Calibration<'d> {
     /// # Errors
     /// As [`Calibration::exact`].
     pub fn recursive_linear(data: &'d Data<'d>) -> Result<Self, FitError> {
-        Self::by(Assembly::Filter, data, |start| Ok(start.solve()))
+        Self::by(Assembly::Filter, FitMethod::Linear, data, &unwatched)
     }
 
     /// [`Calibration::exact`] with the structure of the design already known.
@@ -68,17 +68,18 @@ impl<'d> Calibration<'d> {
     /// # Errors
     /// As [`Calibration::exact`].
     pub fn with_structure(structure: Structure, data: &'d Data<'d>) -> Result<Self, FitError> {
-        let fit = structure.exact(data)?;
+        let fit = structure.fit(FitMethod::Exact, data)?;
         Ok(Self { data, structure, fit, gain: OnceLock::new() })
     }
 
     fn by(
         assembly: Assembly,
+        method: FitMethod,
         data: &'d Data<'d>,
-        fit: impl FnOnce(Start) -> Result<Fit, FitError>,
+        progress: OnProgress<()>,
     ) -> Result<Self, FitError> {
         let (structure, design) = Structure::by(assembly, data)?;
-        let fit = fit(Start { data, structure: &structure, design })?;
+        let fit = Start { data, structure: &structure, design }.fit(method, progress)?;
         Ok(Self { data, structure, fit, gain: OnceLock::new() })
     }
 

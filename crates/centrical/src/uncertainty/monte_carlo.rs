@@ -10,6 +10,7 @@ use rayon::prelude::*;
 use super::budget::Budget;
 use super::comparison::weighted_square;
 use super::coverage::Degrees;
+use crate::fit::batch::FitMethod;
 use crate::fit::{Calibration, Data, Fit, Structure, Termination};
 use crate::model::plateau::noise_factor;
 use crate::model::{FitError, MeasurementModel, Observation, SetPoint};
@@ -27,15 +28,6 @@ pub struct Settings {
     pub coverage: f64,
     /// The fit that is repeated.
     pub method: FitMethod,
-}
-
-/// The fit that is repeated.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum FitMethod {
-    /// Gauss-Newton on the exact model.
-    Exact,
-    /// The linear fit, on readings of the exact model.
-    Linear,
 }
 
 /// What the runs show.
@@ -170,11 +162,7 @@ impl<'a> Laboratory<'a> {
         let truth = self.draw_truth(&mut random);
         let drawn = self.draw(&truth, &mut random);
         let drawn = Data::new(self.data.model(), drawn)?;
-        let fit = match self.settings.method {
-            FitMethod::Exact => self.structure.exact(&drawn)?,
-            FitMethod::Linear => self.structure.linear(&drawn)?,
-        };
-        Ok(self.judge(&fit, &truth))
+        Ok(self.judge(&self.structure.fit(self.settings.method, &drawn)?, &truth))
     }
 
     /// The unknowns, those with a prior drawn from it.
