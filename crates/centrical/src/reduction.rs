@@ -28,6 +28,7 @@
 )]
 
 mod average;
+mod block;
 mod colour;
 mod copies;
 mod ellipsoid;

@@ -3,8 +3,8 @@
 use nalgebra::Vector3;
 use pulp::{Simd, WithSimd};
 
-use crate::reduction::record::RecordSlice;
-use crate::reduction::simd::lanes::{LANES, joined, range, sum, widest};
+use super::record::RecordSlice;
+use super::simd::lanes::{LANES, joined, range, sum, widest};
 use crate::statistics::{MAD, cut, median, whole};
 
 /// Shortest block [s]: a centrifuge's arm changes its speed in seconds, not in tenths.
