@@ -219,7 +219,7 @@ const SETTINGS: [Setting; 40] = [
     ),
     ("recorder.spikes.size", Acceleration, |f| &f.recorder.spikes.size.0, |e| &mut e.recorder.spikes.size),
     ("recorder.gaps.probability", Ratio, |f| &f.recorder.gaps.probability.0, |e| &mut e.recorder.gaps.probability),
-    ("recorder.gaps.length", Ratio, |f| &f.recorder.gaps.length.0, |e| &mut e.recorder.gaps.length),
+    ("recorder.gaps.length", Ratio, |f| &f.recorder.gaps.length.0, |e| &mut e.recorder.gaps.size),
     ("recorder.repeats", Ratio, |f| &f.recorder.repeats.0, |e| &mut e.recorder.repeats),
     ("tachometer.rate", Frequency, |f| &f.tachometer.rate.0, |e| &mut e.tachometer.rate),
     ("tachometer.clock_offset", Time, |f| &f.tachometer.clock_offset.0, |e| &mut e.tachometer.clock_offset),

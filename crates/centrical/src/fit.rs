@@ -7,12 +7,12 @@
 //! **Short rank.** What is estimable is decided on `H`, where the structure of the experiment is exact. Away
 //! from zero the products of two unknowns let second-order traces of the lost combinations into the exact model:
 //! too weak to give an honest value, too strong to be ignored in the others. The lost combinations therefore stay
-//! free in the exact fit. They are kept from running away by a standard deviation of [`NULL_HOLD`](crate::NULL_HOLD)
+//! free in the exact fit. They are kept from running away by a standard deviation of [`Parameter::NULL_HOLD`](crate::Parameter::NULL_HOLD)
 //! typical magnitudes, which is released as soon as the traces themselves keep them; whatever doubt the
 //! lost combinations leave in the estimable parameters is in the covariance of those.
 //!
 //! **Weak directions.** What remains of a short rank may be determined to hundreds of typical magnitudes only, and the model is not linear
-//! so far. Directions beyond [`NULL_HOLD`](crate::NULL_HOLD) along which it is not are held as well, to find a point where it can be
+//! so far. Directions beyond [`Parameter::NULL_HOLD`](crate::Parameter::NULL_HOLD) along which it is not are held as well, to find a point where it can be
 //! linearised. The estimates are one linear step on from there, without that hold: it informs none of them.
 //!
 //! A first reading can leave out `curvature.rs`, which acts with priors and free attitudes alone, and the elimination in
@@ -42,5 +42,5 @@ pub(crate) use data::Data;
 pub(crate) use estimates::{Fit, Termination};
 pub use filter::innovation::Innovation;
 pub use follower::{Arrival, Follower, Progress};
-pub use gain::Gain;
-pub use structure::Structure;
+pub(crate) use gain::Gain;
+pub(crate) use structure::Structure;

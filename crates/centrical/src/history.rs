@@ -4,7 +4,7 @@
 //! - [`Series::evolution`]: level, slope, forecast, due date.
 //! - [`Series::step`]: a repair in place of a drift.
 //! - [`Sameness`]: all parameters together, with their full covariances.
-//! - [`UnitTrend`], [`UnitSessions::distances`], [`Capability`], [`BatchTest`]: units beside each other.
+//! - [`UnitTrend`], [`UnitDistance`], [`Capability`], [`BatchTest`]: units beside each other.
 //! - [`StationTest`]: a machine over its sessions.
 //! - [`Control`]: control charts.
 //!
@@ -33,7 +33,7 @@ pub use chart::{Control, Cusum, Ewma, Rule};
 pub use evolution::{DAYS_IN_YEAR, Estimated, Evolution};
 pub use law::NormalMixture;
 pub use line::Curve;
-pub use outlying::{UnitDistance, UnitSessions};
+pub use outlying::UnitDistance;
 pub use quantiles::Quantiles;
 pub use series::{Point, Series};
 pub use station::{Reading, StationTest};

@@ -4,7 +4,7 @@
 //! - SI throughout, plain `f64`: m, rad, rad/s, m/s^2. "1 g" shown to people is 9.80665 m/s^2.
 //! - Frames are suffixes: `_x` reference (East, North, Up), `_y` arm, `_z` instrument; `c_zy` takes `y` to `z`.
 //! - Small turns and rotation vectors have the source's sign: a frame turned by `v` sees `(E + hat(v)) u`,
-//!   [`hat`] being the transpose of the usual cross-product matrix.
+//!   `hat(v)` being the transpose of the usual cross-product matrix.
 //! - Equations are cited as `[K5.3]`: A. V. Kozlov, "Identification of the error-model parameters of a
 //!   newtonometer unit on a centrifuge", numbered as in `docs/notation.md`, which maps each of the source's
 //!   symbols to its name here.
@@ -63,13 +63,12 @@ pub use centrical_compensate::Monomial;
 pub use fit::calibration::Calibration;
 pub use fit::data::Data;
 pub use fit::estimates::{Fit, Termination};
-pub use linalg::least_squares::{LeastSquares, Solution};
+pub use linalg::least_squares::LeastSquares;
 pub use model::{
     ArmMotion, Centrifuge, Course, Difference, Effect, ErrorModel, Experiment, Extension, Extra, FitError, Group,
-    History, Influence, Kind, Law, Linearisation, MeasurementModel, Mounting, NULL_HOLD, Observation, PairRelation,
-    Parameter, Parameters, Position, Prior, PriorError, PriorUse, ReferencePoint, Rival, Rotation, STANDARD_GRAVITY,
-    SetPoint, Site, Source, SwitchOn, Term, ThirdPosition, TypeB, Unit, Weight, hat, is_rotation, rotation,
-    rotation_rate,
+    History, Influence, Kind, Law, Linearisation, MeasurementModel, Mounting, Observation, PairRelation, Parameter,
+    Parameters, Position, Prior, PriorError, ReferencePoint, Rival, Rotation, STANDARD_GRAVITY, SetPoint, Site, Source,
+    SwitchOn, Term, ThirdPosition, TypeB, Unit, Weight, is_rotation, rotation, rotation_rate,
 };
 pub use nalgebra;
 pub use observability::combination::Combination;

@@ -40,16 +40,17 @@ pub use experiment::{
     Site, Unit,
 };
 pub use extension::{Difference, Extension};
-pub use frame::{hat, is_rotation, rotation, rotation_rate};
+pub(crate) use frame::hat;
+pub use frame::{is_rotation, rotation, rotation_rate};
 pub use group::Group;
 pub use instant::ArmMotion;
 pub(crate) use instant::MountedUnit;
 pub use kind::Kind;
 pub use measurement::MeasurementModel;
-pub use parameter::{NULL_HOLD, Parameter};
+pub use parameter::Parameter;
 pub use parameters::Parameters;
 pub use plateau::{Linearisation, Observation, Weight};
 pub use position::{Position, SwitchOn, ThirdPosition};
-pub use prior::{Prior, PriorError, PriorUse};
+pub use prior::{Prior, PriorError};
 pub use rival::Rival;
 pub use stated::{Influence, Source, TypeB};

@@ -16,7 +16,7 @@
 //!   against uncertainty; [`NextPlateau`]: the best next plateau.
 //!
 //! **Unknowns that a schedule does not determine** (turns of a position that is not mounted, lost combinations) are held by a
-//! standard deviation of ten typical magnitudes, as in a fit ([`crate::NULL_HOLD`]): that is `M_0`, with the priors.
+//! standard deviation of ten typical magnitudes, as in a fit ([`crate::Parameter::NULL_HOLD`]): that is `M_0`, with the priors.
 //! Turns and shifts are free otherwise, and count only by their effect on the instrument's parameters.
 
 mod atom;
@@ -38,7 +38,6 @@ mod search;
 pub use candidates::{Candidates, Costs, Noise, Scenario, Schedule, Visit};
 pub use criterion::{Criterion, Goal, ReadingRange, Robustness};
 pub use error::PlanError;
-pub use frontier::FrontierPoint;
 pub use goals::{Reached, Task};
 pub use next::{Benefit, NextPlateau};
 pub use normalised::Normalised;

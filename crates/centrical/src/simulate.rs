@@ -23,8 +23,7 @@ mod telemetry;
 mod tumble;
 
 pub use equipment::{
-    Bumps, Coloured, Counter, Equipment, Hand, Losses, Machine, Recorder, Sensor, SimulationError, Spikes, Tachometer,
-    Tremor,
+    Chance, Coloured, Counter, Equipment, Hand, Machine, Recorder, Sensor, SimulationError, Tachometer,
 };
 pub use motion::TruePlateau;
 pub use record::Records;

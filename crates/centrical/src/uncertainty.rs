@@ -51,5 +51,5 @@ pub use rivals::{RivalTest, Rivals, Suspects, Unseen};
 pub use selection::{Candidate, FittedCandidate, ModelSelection, NestedTest, TermVerdict};
 pub use speeds::{Extent, ShownSpeed, SpeedContradiction, StatedSpeeds};
 pub use tilt::{OncePerRevolution, TiltComparison};
-pub use validity::{Cleaned, LeftOutPrediction, MountingCheck, PlateauCheck, Validity};
+pub use validity::{Cleaned, LeftOutPrediction, PlateauCheck, Validity};
 pub use verdict::{Findings, Level, Objection, chance_of_residuals};

@@ -124,11 +124,10 @@ fn validity_text(screen: &mut Screen, experiment: &Experiment, validity: &Validi
     largest_residuals(screen, experiment, validity);
     screen.say(2, "each mounting predicted from all others:");
     let mut table = Table::new(1, &[(Align::Right, &["mounting", "chi^2", "dof", "probability"])]);
-    for check in &validity.mountings {
-        let p = check.prediction;
+    for (mounting, p) in &validity.mountings {
         let numbers =
             [format!("{:.1}", p.statistic), p.degrees_of_freedom.to_string(), format!("{:.3}", p.probability)];
-        table.row([(check.mounting + 1).to_string().into()].into_iter().chain(numbers.map(Cell::from)));
+        table.row([(mounting + 1).to_string().into()].into_iter().chain(numbers.map(Cell::from)));
     }
     screen.table(table);
     let found: Vec<&Pattern> = patterns.iter().filter(|p| Level::Reported.is_passed_by(p.family_wise)).collect();

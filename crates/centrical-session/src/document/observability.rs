@@ -285,7 +285,7 @@ fn observed(study: &Study, j: usize) -> ObservedParameter {
         of_instrument: parameter.is_of_instrument(),
         estimable: study.observability().is_estimable(j),
         standard_uncertainty: study.standard_uncertainty(j),
-        prior: study.prior_uses().iter().find(|used| used.prior.parameter == j).map(PriorSummary::from),
+        prior: study.prior_uses().iter().find(|(prior, _)| prior.parameter == j).map(PriorSummary::from),
         prior_share: study.prior_share(j).filter(|_| has_priors),
         rests_on_prior: study.rests_on_prior(j),
     }

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-use centrical::reduction::{CoarseScale, Record, RestRecord, Rests};
+use centrical::reduction::{CoarseScale, Record, Rests};
 use centrical::{OnProgress, advance};
 use centrical_table::{ColumnName, TableLines, refuse_inputs, unit_of_word, write_whole};
 use nalgebra::Vector3;
@@ -223,9 +223,7 @@ fn record(request: &TumbleRequest, file: &Path, progress: OnProgress) -> Result<
 
 /// The rests of the records, and the arcs if they count.
 fn found(request: &TumbleRequest, records: &[Record], progress: OnProgress) -> Result<Rests, Error> {
-    let turning_radius = request.turning_radius;
-    let records: Vec<RestRecord> =
-        records.iter().map(|record| RestRecord { samples: record.as_slice(), turning_radius }).collect();
+    let records: Vec<_> = records.iter().map(|record| (record.as_slice(), request.turning_radius)).collect();
     find_rests(&records, &first(request), progress)
 }
 

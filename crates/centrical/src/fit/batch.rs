@@ -10,8 +10,8 @@ use super::curvature;
 use super::data::{Data, Design};
 use super::estimates::{Fit, Termination};
 use super::structure::{Hold, Structure};
-use crate::linalg::least_squares::{LeastSquares, Solution};
-use crate::model::{FitError, Linearisation, NULL_HOLD};
+use crate::linalg::least_squares::LeastSquares;
+use crate::model::{FitError, Linearisation, Parameter};
 use crate::progress::{OnProgress, advance, unwatched};
 
 /// The null directions are released when the data keep every one of them to this part of the hold: it then informs by less
@@ -82,14 +82,14 @@ impl Start<'_> {
         } else {
             Cow::Borrowed(&self.structure.start)
         };
-        let step = equations.solve(self.design.misfit.clone());
+        let x = equations.solve(self.design.misfit.clone());
         let residuals = (self.data.observations().iter())
             .zip(&self.structure.linearisations)
-            .map(|(o, l)| o.mean - l.reading - l.change(&step.x))
+            .map(|(o, l)| o.mean - l.reading - l.change(&x))
             .collect();
-        let whitened = &self.design.misfit - &self.design.rows * &step.x;
+        let whitened = &self.design.misfit - &self.design.rows * &x;
         let chi_squared = whitened.norm_squared() + self.design.rest.powi(2);
-        self.fitted(&step.x, equations.covariance(), chi_squared, residuals, &self.structure.linearisations)
+        self.fitted(&x, equations.covariance(), chi_squared, residuals, &self.structure.linearisations)
     }
 
     /// The fit with these estimates, by the linearisations that gave them; all else as of a linear one.
@@ -153,7 +153,7 @@ struct Search<'a> {
 impl<'a> Search<'a> {
     fn from(start: Start<'a>) -> Self {
         // Every fit of one experiment has the same equations at zero, and its own misfit.
-        let Solution { x, whitened_length } = start.structure.start.solve(start.design.misfit.clone());
+        let (x, last_length) = start.structure.start.step(start.design.misfit.clone());
         Self {
             start,
             estimates: x.clone(),
@@ -163,7 +163,7 @@ impl<'a> Search<'a> {
             design: None,
             hold: Hold::ALL,
             iterations: 0,
-            last_length: whitened_length,
+            last_length,
             termination: None,
             covariance: DMatrix::zeros(0, 0),
             curved: DMatrix::zeros(0, 0),
@@ -199,17 +199,16 @@ impl<'a> Search<'a> {
         let (equations, misfit) = self.start.structure.held.equations(&design, &self.x, self.hold);
         let from = self.x.clone();
         let objective_norm = misfit.norm().hypot(design.rest);
-        let step = equations.solve(misfit);
+        let (step, length) = equations.step(misfit);
         // Of a sum of squares of readings that are known to a few units of their last place.
         let rounding = 100.0 * f64::EPSILON * design.magnitude;
-        let length = step.whitened_length;
         let next = length * (length / self.last_length).min(1.0);
         let has_converged = next <= CONVERGED + rounding && length <= LAST + rounding;
         let has_settled =
             self.start.structure.held.holds(self.hold) && length < SETTLED && length >= 0.5 * self.last_length;
         self.last_length = length;
         if has_converged || has_settled {
-            self.x += &step.x;
+            self.x += &step;
             self.termination = (!self.release_null_space(&equations)).then_some(Termination::Converged);
         } else if let Some((x, linearisations)) = self.descend(&step, (objective_norm + rounding).powi(2))? {
             (self.x, self.ahead) = (x, Some(linearisations));
@@ -231,7 +230,7 @@ impl<'a> Search<'a> {
         self.curved = curvature::left_by(data, structure, self.hold, &self.x, &self.linearisations)?;
         let covariance = if structure.held.holds(Hold::WEAK) {
             let (equations, misfit) = structure.held.equations(design, from, self.hold.of_null());
-            self.estimates = from + equations.solve(misfit).x;
+            self.estimates = from + equations.solve(misfit);
             equations.covariance()
         } else {
             self.estimates = self.x.clone();
@@ -245,15 +244,15 @@ impl<'a> Search<'a> {
     fn release_null_space(&mut self, equations: &LeastSquares) -> bool {
         let held = &self.start.structure.held;
         let free = held.holds(self.hold.of_null())
-            && held.null_basis.tr_mul(&equations.inverse()).norm() < RELEASE_BELOW * NULL_HOLD;
+            && held.null_basis.tr_mul(&equations.inverse()).norm() < RELEASE_BELOW * Parameter::NULL_HOLD;
         self.hold.null &= !free;
         free
     }
 
     /// The point one step on, halved until the objective falls, and the linearisations there; none if it does not.
-    fn descend(&self, step: &Solution, objective: f64) -> Result<Option<Place>, FitError> {
+    fn descend(&self, step: &DVector<f64>, objective: f64) -> Result<Option<Place>, FitError> {
         for halvings in 0..HALVING_LIMIT {
-            let x = &self.x + &step.x * 0.5_f64.powi(halvings.cast_signed());
+            let x = &self.x + step * 0.5_f64.powi(halvings.cast_signed());
             let linearisations = self.start.data.linearised(x.as_slice());
             if self.objective(&x, &linearisations)? <= objective {
                 return Ok(Some((x, linearisations)));

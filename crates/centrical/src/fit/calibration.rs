@@ -67,7 +67,7 @@ impl<'d> Calibration<'d> {
     ///
     /// # Errors
     /// As [`Calibration::exact`].
-    pub fn with_structure(structure: Structure, data: &'d Data<'d>) -> Result<Self, FitError> {
+    pub(crate) fn with_structure(structure: Structure, data: &'d Data<'d>) -> Result<Self, FitError> {
         let fit = structure.fit(FitMethod::Exact, data)?;
         Ok(Self { data, structure, fit, gain: OnceLock::new() })
     }
@@ -89,7 +89,7 @@ impl<'d> Calibration<'d> {
     }
 
     /// The structure of the design.
-    pub fn structure(&self) -> &Structure {
+    pub(crate) fn structure(&self) -> &Structure {
         &self.structure
     }
 
@@ -125,7 +125,7 @@ impl<'d> Calibration<'d> {
     ///
     /// # Errors
     /// [`FitError`] when numbers overflow.
-    pub fn gain(&self) -> Result<&Gain, FitError> {
+    pub(crate) fn gain(&self) -> Result<&Gain, FitError> {
         if let Some(gain) = self.gain.get() {
             return Ok(gain);
         }

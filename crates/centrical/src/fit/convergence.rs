@@ -1,7 +1,7 @@
 //! How the uncertainties shrink as the session goes on: those of all unknowns after each plateau.
 //!
 //! Square-root information form: the triangular factor `R` of the whitened design starts from a standard deviation of
-//! [`NULL_HOLD`] typical magnitudes for every unknown and from the priors, and the plateaus of each stage add their whitened rows by a
+//! [`Parameter::NULL_HOLD`] typical magnitudes for every unknown and from the priors, and the plateaus of each stage add their whitened rows by a
 //! QR factorisation. The uncertainties are the lengths of the rows of `R^-1`. The attitude of a rest is an unknown of that rest alone: it is
 //! eliminated with it ([`Global`]), so that the time is linear in rests.
 
@@ -11,7 +11,7 @@ use super::calibration::Calibration;
 use super::filter::Readings;
 use super::global::Global;
 use crate::linalg::least_squares::LeastSquares;
-use crate::model::{FitError, NULL_HOLD};
+use crate::model::{FitError, Parameter};
 
 /// The uncertainties at some stage of the session.
 #[derive(Debug, Clone, PartialEq)]
@@ -32,7 +32,7 @@ impl Calibration<'_> {
         let (observations, x) = (data.observations(), self.fit().unknowns());
         let (global, parameters) = (Global::of(data.model()), data.model().parameters().len());
         let (count, sizes) = (global.len(), global.part(&data.typical()));
-        let hold = |j: usize| if global.columns()[j] < parameters { NULL_HOLD.powi(-2) } else { 1.0 };
+        let hold = |j: usize| if global.columns()[j] < parameters { Parameter::NULL_HOLD.powi(-2) } else { 1.0 };
         let of_priors = global.squared_lengths_of_priors().component_mul(&sizes).component_mul(&sizes);
         let mut triangle = DMatrix::from_diagonal(&of_priors.map_with_location(|j, _, prior| (prior + hold(j)).sqrt()));
         let (every, mut plateaus) = (observations.len().div_ceil(most.max(1)).max(1), 0);

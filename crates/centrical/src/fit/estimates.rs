@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, Matrix3, Vector3};
 
-use crate::model::prior::{self, Prior, PriorUse};
+use crate::model::prior::{self, Prior};
 use crate::observability::Observability;
 
 /// How an iteration ended.
@@ -104,8 +104,9 @@ impl Fit {
         &self.observability
     }
 
-    /// What the data added to each prior that was given on an estimable parameter.
-    pub fn prior_uses(&self) -> Vec<PriorUse> {
+    /// Each prior with the standard uncertainty after the data over that before: 1 when the value rests on the prior alone, near 0 when the data
+    /// determine it.
+    pub fn prior_uses(&self) -> Vec<(Prior, f64)> {
         prior::uses(&self.priors, |i, j| self.covariance[(i, j)])
     }
 

@@ -58,7 +58,7 @@ pub struct Follower<'m> {
 pub struct Arrival<'m> {
     /// Its test against the plateaus before: by how much it raises the least sum of squares, at the point with it, and the rank.
     ///
-    /// As in a fit, rank is decided on `H`, and what `H` does not see is held by [`NULL_HOLD`] typical magnitudes: the exact
+    /// As in a fit, rank is decided on `H`, and what `H` does not see is held by [`Parameter::NULL_HOLD`] typical magnitudes: the exact
     /// model has second-order traces of it, which would pass for something new in every plateau.
     pub innovation: Innovation,
     observation: Observation,
@@ -181,7 +181,7 @@ impl<'m> Follower<'m> {
     fn progress_with(&self, newcomer: Option<&Observation>) -> Result<Progress, FitError> {
         let known = self.known(&self.past, newcomer, &self.point)?;
         let (global, root) = (self.past.global(), known.equations.root());
-        let dy = known.equations.solve(known.misfit).x;
+        let dy = known.equations.solve(known.misfit);
         let x = self.past.completed(known.attitude.as_ref(), &(global.part(&self.point) + dy));
         let mut estimates = vec![None; x.len()];
         for prior in global.priors_of_attitudes() {
@@ -217,12 +217,12 @@ impl<'m> Follower<'m> {
             let newcomer = past.linearised(newcomer)?;
             let (plateau, y) = (past.equations_of(&newcomer), global.part(&point));
             let (equations, misfit) = held(&global.with_priors(past.design(Some(&plateau), &y), &y), &y, &held_to);
-            let step = equations.solve(misfit);
-            let x = past.completed(plateau.attitude.as_ref(), &(y + step.x));
+            let (step, length) = equations.step(misfit);
+            let x = past.completed(plateau.attitude.as_ref(), &(y + step));
             let dx = &x - &point;
             let limit = if moved.is_none() && self.is_fresh() { FRESH_REMAINDER } else { REMAINDER };
             // The attitude of a rest moves besides.
-            let length = step.whitened_length.max(newcomer.change(&dx));
+            let length = length.max(newcomer.change(&dx));
             if length < CLOSE || past.remainder(&newcomer, &x) < limit {
                 return Ok((x, moved));
             }

@@ -6,7 +6,7 @@ use super::data::{Data, Design};
 use super::departure::departs;
 use super::filter;
 use crate::linalg::least_squares::{LeastSquares, Own};
-use crate::model::{FitError, Linearisation, NULL_HOLD, Prior};
+use crate::model::{FitError, Linearisation, Parameter, Prior};
 use crate::observability::Observability;
 
 /// Null directions are as wide as the hold, to rounding; a weak direction is wider by this factor.
@@ -72,7 +72,7 @@ pub(super) struct Held {
     pub typical: DVector<f64>,
 }
 
-/// Which directions are held about zero, with a standard deviation of [`NULL_HOLD`] typical magnitudes.
+/// Which directions are held about zero, with a standard deviation of [`Parameter::NULL_HOLD`] typical magnitudes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Hold {
     /// The null directions.
@@ -164,7 +164,7 @@ impl Held {
         if observability.lost() == 0 {
             let all = Self { own: assembly.own(data, data.model().priors(), true), ..held.clone() };
             let start = all.equations(design, &zero, Hold::ALL).0;
-            if start.inverse().norm() < NULL_HOLD {
+            if start.inverse().norm() < Parameter::NULL_HOLD {
                 return Ok((all, start));
             }
         }
@@ -173,12 +173,12 @@ impl Held {
         Ok((held, start))
     }
 
-    /// Directions that the data determine, to more than [`NULL_HOLD`] typical magnitudes, and along which the model departs from its
+    /// Directions that the data determine, to more than [`Parameter::NULL_HOLD`] typical magnitudes, and along which the model departs from its
     /// linearisation at `X = 0` within one standard uncertainty.
     fn weak(&self, data: &Data, linearisations: &[Linearisation], design: &Design) -> Result<DMatrix<f64>, FitError> {
         let (equations, _) = self.equations(design, &DVector::zeros(data.unknowns()), Hold::NULL);
         let mut weak = DMatrix::zeros(data.unknowns(), 0);
-        for direction in equations.wider_than(WIDER * NULL_HOLD) {
+        for direction in equations.wider_than(WIDER * Parameter::NULL_HOLD) {
             if departs(data, linearisations, &direction.component_mul(&self.typical))? {
                 weak.extend([direction]);
             }
@@ -197,7 +197,7 @@ impl Held {
         let held: Vec<_> = bases.iter().filter(|(held, _)| *held).flat_map(|(_, basis)| basis.column_iter()).collect();
         let mut rows = DMatrix::zeros(held.len(), self.typical.len());
         for (mut row, direction) in rows.row_iter_mut().zip(held) {
-            row.copy_from(&(direction.transpose() * (1.0 / NULL_HOLD)));
+            row.copy_from(&(direction.transpose() * (1.0 / Parameter::NULL_HOLD)));
         }
         rows
     }

@@ -164,7 +164,7 @@ fn misfit_and_fall(points: &[Point], shared: &DMatrix<f64>, curve: Curve, tau: f
     });
     let sizes = DVector::from_iterator(q + m, whitened.column_iter().map(|column| 1.0 / column.norm()));
     let values = DVector::from_iterator(k, points.iter().zip(&weights).map(|(p, w)| w.sqrt() * p.value));
-    let solution = LeastSquares::new(whitened * DMatrix::from_diagonal(&sizes), sizes).solve(values).x;
+    let solution = LeastSquares::new(whitened * DMatrix::from_diagonal(&sizes), sizes).solve(values);
     let (fitted, errors) = (design * &solution, solution.rows(q, m).norm_squared());
     let (mut misfit, mut fall) = (errors, 0.0);
     for ((point, weight), fitted) in points.iter().zip(&weights).zip(fitted.iter()) {

@@ -22,7 +22,8 @@ use rayon::prelude::*;
 use self::component::{Component, Known};
 use self::means::UnitMeans;
 use self::rows::Rows;
-pub use self::sessions::UnitSessions;
+use self::sessions::UnitSessions;
+use super::together::SessionEstimates;
 use crate::statistics::Random;
 use crate::statistics::chi_squared_tail;
 
@@ -37,18 +38,25 @@ pub struct UnitDistance {
     pub scores: Vec<f64>,
 }
 
-impl UnitSessions<'_> {
+impl UnitDistance {
     /// Fewer units give no law.
     pub const FEWEST_UNITS: usize = 10;
 
-    /// The distances of units by their sessions; `None` below [`Self::FEWEST_UNITS`], or where a parameter does not vary. The same `seed` gives the
+    /// The distances of units of one type by their `session`s, of which each unit has one or more by `counts`. Session `t` of a unit is given in the
+    /// order of time: `p` values and the covariance of their errors as it states them, made when it is asked for. `None` below [`Self::FEWEST_UNITS`], or where a parameter does not vary. The same `seed` gives the
     /// same probabilities on any number of threads.
-    pub fn distances(&self, seed: u64) -> Option<Vec<UnitDistance>> {
-        if self.counts.len() < Self::FEWEST_UNITS {
+    pub fn of_all(
+        counts: &[usize],
+        session: &(dyn Fn(usize, usize) -> SessionEstimates + Sync),
+        seed: u64,
+    ) -> Option<Vec<Self>> {
+        if counts.len() < Self::FEWEST_UNITS {
             return None;
         }
-        let means = UnitMeans::of(self);
-        let add_errors = |unit: usize, weight: f64, sum: &mut DMatrix<f64>| means.add_errors(self, unit, weight, sum);
+        let sessions = UnitSessions { counts, session };
+        let means = UnitMeans::of(&sessions);
+        let add_errors =
+            |unit: usize, weight: f64, sum: &mut DMatrix<f64>| means.add_errors(&sessions, unit, weight, sum);
         let units = Rows { values: means.values.clone(), variances: means.variances.clone(), add_errors: &add_errors };
         let known = Known::of(units.values.nrows(), units.values.ncols())?;
         let found = Component::of(&units, &known)?;

@@ -27,15 +27,6 @@ pub struct LeastSquares {
     sizes: DVector<f64>,
 }
 
-/// A solution.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Solution {
-    /// `x`.
-    pub x: DVector<f64>,
-    /// Length of `x` in standard uncertainties, all unknowns together.
-    pub whitened_length: f64,
-}
-
 impl LeastSquares {
     /// Factors `A S`, the equations in units of the `sizes` of the unknowns.
     pub fn new(scaled: DMatrix<f64>, sizes: DVector<f64>) -> Self {
@@ -61,10 +52,15 @@ impl LeastSquares {
     }
 
     /// The solution for `b`; rows that it lacks at its end are zeros.
-    pub fn solve(&self, b: DVector<f64>) -> Solution {
+    pub fn solve(&self, b: DVector<f64>) -> DVector<f64> {
+        self.step(b).0
+    }
+
+    /// The solution for `b`, and its length in standard uncertainties, all unknowns together.
+    pub(crate) fn step(&self, b: DVector<f64>) -> (DVector<f64>, f64) {
         let rotated = self.rotated(DMatrix::from_columns(&[b]));
-        let whitened_length = rotated.rows_range(..self.columns()).norm();
-        Solution { x: self.unknowns(&rotated).column(0).into_owned(), whitened_length }
+        let length = rotated.rows_range(..self.columns()).norm();
+        (self.unknowns(&rotated).column(0).into_owned(), length)
     }
 
     /// `Q^T B`: the first rows, one per unknown, are what the unknowns follow; the others are what none of them can. Rows

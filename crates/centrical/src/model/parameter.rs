@@ -8,10 +8,6 @@ use super::experiment::STANDARD_GRAVITY;
 use super::group::Group;
 use super::kind::Kind;
 
-/// Standard deviation with which null directions are held about zero, in typical magnitudes of the parameters
-/// (5 mm, 10 mrad, 1e-2 of scale): ten times what any real unit shows, so that it holds and does not inform.
-pub const NULL_HOLD: f64 = 10.0;
-
 /// One unknown.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Parameter {
@@ -31,14 +27,16 @@ pub struct Parameter {
 }
 
 impl Parameter {
-    /// Whether a standard uncertainty [its unit] is informative: one of [`NULL_HOLD`] typical magnitudes or more is known
+    /// Standard deviation with which null directions are held about zero, in typical magnitudes of the parameters
+    /// (5 mm, 10 mrad, 1e-2 of scale): ten times what any real unit shows, so that it holds and does not inform.
+    pub const NULL_HOLD: f64 = 10.0;
+
+    /// Whether a standard uncertainty [its unit] is informative: one of [`Self::NULL_HOLD`] typical magnitudes or more is known
     /// without any data, and so far from the estimate the model is not linear.
     pub fn is_informative(&self, standard_uncertainty: f64) -> bool {
-        standard_uncertainty < NULL_HOLD * self.typical
+        standard_uncertainty < Self::NULL_HOLD * self.typical
     }
-}
 
-impl Parameter {
     /// Whether it belongs to the instrument: a coefficient of its error model, as opposed to the geometry.
     pub fn is_of_instrument(&self) -> bool {
         matches!(self.kind, Kind::Term(_))

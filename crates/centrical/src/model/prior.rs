@@ -22,16 +22,6 @@ pub struct Prior {
     pub standard_uncertainty: f64,
 }
 
-/// What the data add to a prior.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct PriorUse {
-    /// The prior.
-    pub prior: Prior,
-    /// Standard uncertainty after the data over that before: 1 when the value rests on the prior alone, near 0 when
-    /// the data determine it.
-    pub posterior_over_prior: f64,
-}
-
 /// Why a prior is invalid.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum PriorError {
@@ -118,10 +108,10 @@ pub(crate) fn select(
     Ok(selected.into_iter().map(|parameter| Prior { parameter, mean, standard_uncertainty }).collect())
 }
 
-/// What the data add to each prior, from the covariance of the estimates with the priors in.
-pub(crate) fn uses(priors: &[Prior], covariance: impl Fn(usize, usize) -> f64) -> Vec<PriorUse> {
+/// Each prior with the standard uncertainty after the data over that before, from the covariance of the estimates with the priors in.
+pub(crate) fn uses(priors: &[Prior], covariance: impl Fn(usize, usize) -> f64) -> Vec<(Prior, f64)> {
     let ratio = |p: &Prior| covariance(p.parameter, p.parameter).sqrt() / p.standard_uncertainty;
-    priors.iter().map(|prior| PriorUse { prior: *prior, posterior_over_prior: ratio(prior) }).collect()
+    priors.iter().map(|prior| (*prior, ratio(prior))).collect()
 }
 
 /// Part of the variance of estimate `j` that comes from the priors: `sum_k (C_jk / sigma_k)^2 / C_jj`, from 0 (data

@@ -4,7 +4,7 @@ use nalgebra::DMatrix;
 
 use crate::model::plateau::whitened_rows;
 use crate::model::prior;
-use crate::model::{FitError, Linearisation, MeasurementModel, Prior, PriorUse, Weight};
+use crate::model::{FitError, Linearisation, MeasurementModel, Prior, Weight};
 
 use super::combination::Combination;
 use super::rank::Observability;
@@ -84,8 +84,9 @@ impl Study {
         self.observability.is_estimable(j).then(share)
     }
 
-    /// What the data add to each prior.
-    pub fn prior_uses(&self) -> Vec<PriorUse> {
+    /// Each prior with the standard uncertainty after the data over that before: 1 when the value rests on the prior alone, near 0 when the data
+    /// determine it.
+    pub fn prior_uses(&self) -> Vec<(Prior, f64)> {
         prior::uses(self.model.priors(), |i, j| self.observability.covariance(i, j))
     }
 }

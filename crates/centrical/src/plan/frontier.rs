@@ -6,17 +6,8 @@ use super::error::PlanError;
 use super::search::{Effort, Plan, Problem};
 use crate::progress::{OnProgress, unwatched};
 
-/// The best plan for one time.
-#[derive(Debug, Clone, PartialEq)]
-pub struct FrontierPoint {
-    /// Time given [s].
-    pub time: f64,
-    /// The plan.
-    pub plan: Plan,
-}
-
 impl Candidates {
-    /// The best plans for some `times` [s], those that are too short for anything left out.
+    /// The best plan for each of some `times` [s], which stands before it; times that are too short for anything are left out.
     ///
     /// # Errors
     /// As [`Self::best_for_time`], but for the time.
@@ -26,11 +17,11 @@ impl Candidates {
         times: &[f64],
         effort: Effort,
         progress: OnProgress<()>,
-    ) -> Result<Vec<FrontierPoint>, PlanError> {
+    ) -> Result<Vec<(f64, Plan)>, PlanError> {
         let mut points = Vec::with_capacity(times.len());
         for &time in times {
             match self.best_for_time(criterion, time, effort, progress) {
-                Ok(plan) => points.push(FrontierPoint { time, plan }),
+                Ok(plan) => points.push((time, plan)),
                 Err(PlanError::TooShort { .. }) => {}
                 Err(error) => return Err(error),
             }

@@ -13,7 +13,7 @@ use super::criterion::{Columns, Criterion};
 use super::error::PlanError;
 use crate::linalg::fold::fold;
 use crate::model::plateau::total_covariance;
-use crate::model::{Linearisation, MeasurementModel, NULL_HOLD, SetPoint, Weight};
+use crate::model::{Linearisation, MeasurementModel, Parameter, SetPoint, Weight};
 
 /// Candidates whose rows are folded in at once: as many as stay in the nearest cache with the triangle.
 const AT_ONCE: usize = 16;
@@ -84,7 +84,8 @@ impl LinearisedScenario {
     pub fn of(model: &MeasurementModel, nominal: &[f64], criterion: &Criterion) -> Result<Self, PlanError> {
         // An influence is known to its standard uncertainty, 1: the hold is its prior.
         let influences = model.influences().iter().map(|_| 1.0);
-        let scale: Vec<f64> = model.parameters().iter().map(|p| NULL_HOLD * p.typical).chain(influences).collect();
+        let scale: Vec<f64> =
+            model.parameters().iter().map(|p| Parameter::NULL_HOLD * p.typical).chain(influences).collect();
         let jacobian = |set_point| {
             let at = linearised(model, nominal, set_point);
             at.by_unknowns().map(|(j, column)| (j, column * scale[j])).collect::<Vec<_>>()

@@ -8,7 +8,7 @@ mod strips;
 use nalgebra::{Matrix3, Vector3};
 
 use super::error::ReductionError;
-use super::locate::{ClockAgreement, ClockOffset, Located, Shape, SpeedReading, TURNING, Timing, Window};
+use super::locate::{ClockAgreement, ClockOffset, Located, Shape, TURNING, Timing, Window};
 use super::plateau::{Arc, LeftOut};
 use super::record::RecordSlice;
 use super::survey::Blocks;
@@ -296,11 +296,6 @@ impl ReducedMounting {
     /// How the ramps of the telemetry, or of the counter of revolutions, agree with those of the record.
     pub fn clock_agreement(&self) -> Option<ClockAgreement> {
         self.timing.agreement
-    }
-
-    /// The speed of each plateau as the telemetry or the counter shows it, in the order of the schedule.
-    pub fn speed_readings(&self) -> &[Option<SpeedReading>] {
-        &self.timing.readings
     }
 }
 

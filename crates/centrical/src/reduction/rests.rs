@@ -24,32 +24,17 @@ pub struct Rests {
     pub noise_at_most: f64,
 }
 
-/// A record of a unit that is turned.
-#[derive(Debug, Clone, Copy)]
-pub struct RestRecord<'a> {
-    /// Its readings.
-    pub samples: RecordSlice<'a>,
-    /// Largest distance of the proof masses from the axes of a slow rotation [m], whose arcs then count as rests; `None` if they do not.
-    pub turning_radius: Option<f64>,
-}
-
-impl<'a> From<RecordSlice<'a>> for RestRecord<'a> {
-    /// A record whose slow rotation does not count.
-    fn from(samples: RecordSlice<'a>) -> Self {
-        Self { samples, turning_radius: None }
-    }
-}
-
 impl Rests {
-    /// The means of the rests of some records. The colour of the noise is pooled over all of them. A rest whose samples are not steady
+    /// The means of the rests of some records, each with the largest distance of the proof masses from the axes of a slow rotation [m], whose arcs
+    /// then count as rests; `None` if they do not. The colour of the noise is pooled over all of them. A rest whose samples are not steady
     /// is left out. Arcs of slow rotation count if the attitudes of all show an ellipsoid. `progress` is asked again and again.
     ///
     /// # Errors
     /// [`ReductionError`] if a record is invalid (lengths, times), too short, or stuck or saturated in a rest, or when the caller stops.
-    pub fn of(records: &[RestRecord], progress: OnProgress<()>) -> Result<Rests, ReductionError> {
-        let located = records.iter().map(|record| {
-            let located = Survey::of(record.samples)?.locate_rests(record.turning_radius.is_some())?;
-            let fits = averaged(&located, record, progress)?;
+    pub fn of(records: &[(RecordSlice, Option<f64>)], progress: OnProgress<()>) -> Result<Rests, ReductionError> {
+        let located = records.iter().map(|&(samples, turning_radius)| {
+            let located = Survey::of(samples)?.locate_rests(turning_radius.is_some())?;
+            let fits = averaged(&located, samples, turning_radius, progress)?;
             Ok((located, fits))
         });
         let mut located: Vec<(Located, Vec<PlateauFit>)> = located.collect::<Result<_, ReductionError>>()?;
@@ -59,9 +44,9 @@ impl Rests {
             }
         }
         let coarse = Ellipsoid::nearest(&means_of(&located));
-        let of_record = |(record, (located, fits)): (&RestRecord, &(Located, Vec<PlateauFit>))| {
-            let white = white_noise(record.samples, fits, &coarse, located.sample_noise());
-            let part = AttitudePart::of(record.samples, fits, &coarse, &white);
+        let of_record = |(&(samples, _), (located, fits)): (&(RecordSlice, _), &(Located, Vec<PlateauFit>))| {
+            let white = white_noise(samples, fits, &coarse, located.sample_noise());
+            let part = AttitudePart::of(samples, fits, &coarse, &white);
             ((white, part), uncertain_sizes(fits, &white, &coarse, part))
         };
         let (trembling, uncertain): (Vec<_>, Vec<_>) = records.iter().zip(&located).map(of_record).unzip();
@@ -73,8 +58,8 @@ impl Rests {
         let ellipsoid = draw_out(with_noise, coarse);
         advance(progress, ())?;
         let mut along = Vec::new();
-        for (record, (located, fits)) in records.iter().zip(&located) {
-            along.extend(noise_along(record.samples, fits, &ellipsoid, located.sample_noise())?);
+        for (&(samples, _), (located, fits)) in records.iter().zip(&located) {
+            along.extend(noise_along(samples, fits, &ellipsoid, located.sample_noise())?);
         }
         let reduced = located.into_iter().map(|(located, fits)| {
             let of_rest = |fit: PlateauFit| {
@@ -123,15 +108,16 @@ fn uncertain_sizes(fits: &[PlateauFit], white: &Vector3<f64>, ellipsoid: &Ellips
 /// face would be missing in silence.
 fn averaged(
     located: &Located,
-    record: &RestRecord,
+    samples: RecordSlice,
+    turning_radius: Option<f64>,
     progress: OnProgress<()>,
 ) -> Result<Vec<PlateauFit>, ReductionError> {
     let is_smooth =
-        |fit: &PlateauFit| record.turning_radius.is_none_or(|radius| is_smooth(fit, located.sample_noise(), radius));
+        |fit: &PlateauFit| turning_radius.is_none_or(|radius| is_smooth(fit, located.sample_noise(), radius));
     let mut fits = Vec::new();
     for rest in 0..located.windows().len() {
         advance(progress, ())?;
-        match located.average(rest, record.samples) {
+        match located.average(rest, samples) {
             Err(beyond @ (ReductionError::Saturated { .. } | ReductionError::Stuck { .. })) => return Err(beyond),
             fit => fits.extend(fit.ok().filter(is_smooth)),
         }

@@ -1,5 +1,6 @@
 //! Measured speeds of a session: the readings of all plateaus with their scatter pooled.
 
+use super::average::ReducedMounting;
 use super::locate::SpeedReading;
 
 /// The speed of a plateau as measured.
@@ -19,10 +20,11 @@ pub struct MeasuredSpeed {
 }
 
 impl MeasuredSpeed {
-    /// The speeds of plateaus that were set to `set` [rad/s], any sign. Plateaus set alike have one variance of a sample: a
+    /// The speeds of the plateaus of some mountings, which were set to `set` [rad/s], any sign. Plateaus set alike have one variance of a sample: a
     /// plateau alone has a dozen degrees of freedom, too few for a weight in the fit.
-    pub fn of_all(set: &[f64], readings: &[Option<SpeedReading>]) -> Vec<Option<MeasuredSpeed>> {
-        let pairs = || set.iter().zip(readings).filter_map(|(set, reading)| Some((set.abs(), reading.as_ref()?)));
+    pub fn of_all(set: &[f64], mountings: &[ReducedMounting]) -> Vec<Option<MeasuredSpeed>> {
+        let readings = || mountings.iter().flat_map(|mounting| &mounting.timing.readings);
+        let pairs = || set.iter().zip(readings()).filter_map(|(set, reading)| Some((set.abs(), reading.as_ref()?)));
         let pooled = |speed: f64| {
             let alike = pairs().filter(|(set, _)| (set - speed).abs() <= 1e-9 * speed);
             let (freedom, squares) = alike.fold((0, 0.0), |(freedom, squares), (_, reading)| {
@@ -41,6 +43,6 @@ impl MeasuredSpeed {
             let slope = reading.slope.map(|slope| slope.map(|slope| slope / reading.speed));
             Some(MeasuredSpeed { speed: reading.speed, uncertainty, degrees_of_freedom, step_uncertainty, slope })
         };
-        set.iter().zip(readings).map(measured).collect()
+        set.iter().zip(readings()).map(measured).collect()
     }
 }

@@ -59,7 +59,7 @@ pub struct Sensor {
 /// First-order Gauss-Markov noise: AR(1) at the rate of sampling.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Coloured {
-    /// Standard deviation [m/s^2].
+    /// Standard deviation [m/s^2, or as stated].
     pub deviation: f64,
     /// Correlation time [s].
     pub time: f64,
@@ -80,30 +80,12 @@ pub struct Hand {
     pub turn_spread: f64,
     /// Standard deviation of the acceleration of the unit in the middle of a turn [m/s^2].
     pub shake: f64,
-    /// Tremor of the attitude.
-    pub tremor: Tremor,
-    /// Knocks in the midst of rests.
-    pub bumps: Bumps,
+    /// Tremor of the attitude about each instrument axis [rad]. The size of gravity stays.
+    pub tremor: Coloured,
+    /// Knocks of 0.05 s in the midst of rests: probability per rest, and the standard deviation of a reading while one lasts [m/s^2].
+    pub bumps: Chance,
     /// Standard deviation of the change of each bias from one switch-on to another that states none of its own [m/s^2].
     pub bias_change: f64,
-}
-
-/// Tremor of an attitude, first-order Gauss-Markov about each instrument axis. The size of gravity stays.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Tremor {
-    /// Standard deviation [rad].
-    pub deviation: f64,
-    /// Correlation time [s].
-    pub time: f64,
-}
-
-/// Knocks that last 0.05 s.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Bumps {
-    /// Probability per rest.
-    pub probability: f64,
-    /// Standard deviation of a reading while it lasts [m/s^2].
-    pub size: f64,
 }
 
 /// The recorder, which loses or spoils some samples.
@@ -111,30 +93,21 @@ pub struct Bumps {
 pub struct Recorder {
     /// Samples per second [Hz].
     pub rate: f64,
-    /// Errors of transmission in one newtonometer's reading.
-    pub spikes: Spikes,
-    /// Samples lost.
-    pub gaps: Losses,
+    /// Errors of transmission in one newtonometer's reading: probability per sample, and the standard deviation of the error [m/s^2].
+    pub spikes: Chance,
+    /// Runs of lost samples: probability per sample that one begins, and the mean number of its samples, geometrically distributed.
+    pub gaps: Chance,
     /// Probability that a sample is recorded twice, with the same time.
     pub repeats: f64,
 }
 
-/// Errors of transmission.
+/// What happens by chance.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Spikes {
-    /// Probability per sample.
+pub struct Chance {
+    /// Its probability.
     pub probability: f64,
-    /// Standard deviation of their size [m/s^2].
+    /// Its size.
     pub size: f64,
-}
-
-/// Runs of lost samples: gaps in the record.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Losses {
-    /// Probability per sample that a run of losses begins.
-    pub probability: f64,
-    /// Mean length of a run [samples], geometrically distributed.
-    pub length: f64,
 }
 
 /// The centrifuge's own report of its speed. It does not see the plateaus' speed errors unless it measures.
@@ -185,13 +158,7 @@ impl Default for Coloured {
 
 impl Default for Recorder {
     fn default() -> Self {
-        Self { rate: 100.0, spikes: Spikes::default(), gaps: Losses::default(), repeats: 0.0 }
-    }
-}
-
-impl Default for Losses {
-    fn default() -> Self {
-        Self { probability: 0.0, length: 1.0 }
+        Self { rate: 100.0, spikes: Chance::default(), gaps: Chance { probability: 0.0, size: 1.0 }, repeats: 0.0 }
     }
 }
 
@@ -225,16 +192,10 @@ impl Default for Hand {
             turn: 1.0,
             turn_spread: 0.0,
             shake: 0.0,
-            tremor: Tremor::default(),
-            bumps: Bumps::default(),
+            tremor: Coloured { deviation: 0.0, time: 0.3 },
+            bumps: Chance::default(),
             bias_change: 0.0,
         }
-    }
-}
-
-impl Default for Tremor {
-    fn default() -> Self {
-        Self { deviation: 0.0, time: 0.3 }
     }
 }
 
@@ -325,7 +286,7 @@ impl Equipment {
         magnitude("recorder.spikes.size", recorder.spikes.size)?;
         ratio("recorder.gaps.probability", recorder.gaps.probability)?;
         let expected = "a number of samples, 1 to a million";
-        bounded("recorder.gaps.length", recorder.gaps.length, |found| (1.0..=1e6).contains(&found), expected)?;
+        bounded("recorder.gaps.length", recorder.gaps.size, |found| (1.0..=1e6).contains(&found), expected)?;
         ratio("recorder.repeats", recorder.repeats)?;
         rate("tachometer.rate", tachometer.rate)?;
         magnitude("tachometer.clock_offset", tachometer.clock_offset)?;

@@ -162,7 +162,7 @@ impl Transmission {
             spikes: Arrivals::new(random(Draw::Spikes), recorder.spikes.probability),
             spike_size: recorder.spikes.size,
             gaps: Arrivals::new(random(Draw::Losses), recorder.gaps.probability),
-            gap_end: 1.0 / recorder.gaps.length,
+            gap_end: 1.0 / recorder.gaps.size,
             resumes: 0,
             repeats: Arrivals::new(random(Draw::Repeats), recorder.repeats),
             quantum: sensor.quantum,

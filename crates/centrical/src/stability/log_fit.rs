@@ -188,7 +188,7 @@ fn non_negative(design: &DMatrix<f64>, target: &DVector<f64>, is_active: [bool; 
         }
         let columns = design.select_columns(&subset);
         let Some(equations) = LeastSquares::of_columns(columns.clone()) else { continue };
-        let solution = equations.solve(target.clone()).x;
+        let solution = equations.solve(target.clone());
         let square = (columns * &solution - target).norm_squared();
         if square < best.0 && solution.iter().all(|theta| *theta > 0.0) {
             best = (square, [0.0; STOCHASTIC]);

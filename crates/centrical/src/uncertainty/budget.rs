@@ -134,7 +134,7 @@ impl Budget {
     }
 
     /// Whether the null space leaves more doubt in parameter `j` than a tenth of the variance of all sources, which `fit` knows. Products of two
-    /// unknowns let the lost combinations in, and only the hold keeps them ([`crate::NULL_HOLD`] typical magnitudes), which is
+    /// unknowns let the lost combinations in, and only the hold keeps them ([`crate::Parameter::NULL_HOLD`] typical magnitudes), which is
     /// not a source of the budget. `fit` is the fit of this budget.
     pub fn is_affected_by_null_space(&self, fit: &Fit, j: usize) -> bool {
         let known: f64 = self.contributions.iter().map(|c| c.variance(j)).sum();

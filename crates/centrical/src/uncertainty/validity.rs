@@ -32,8 +32,8 @@ pub struct Validity {
     pub probability: f64,
     /// By observation.
     pub plateaus: Vec<PlateauCheck>,
-    /// By mounting that has observations.
-    pub mountings: Vec<MountingCheck>,
+    /// Each mounting that has observations, by its index, and how well the others predict it.
+    pub mountings: Vec<(usize, LeftOutPrediction)>,
     /// Parameters of the instrument that rest on readings which no other checks: errors of these readings move them and leave no residual.
     pub unchecked: Vec<usize>,
 }
@@ -47,15 +47,6 @@ pub struct PlateauCheck {
     pub standardised: Vector3<f64>,
     /// Part of its three readings that the fit follows, 0 to 1.
     pub leverage: f64,
-    /// How well the others predict it.
-    pub prediction: LeftOutPrediction,
-}
-
-/// The check of one mounting: predicted from all others.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct MountingCheck {
-    /// Index of the mounting.
-    pub mounting: usize,
     /// How well the others predict it.
     pub prediction: LeftOutPrediction,
 }
@@ -102,7 +93,7 @@ impl Calibration<'_> {
         let mounting_of = |n: usize| experiment.set_points[observations[n].set_point].mounting;
         let mountings = (0..experiment.mountings.len()).filter_map(|mounting| {
             let members: Vec<usize> = (0..observations.len()).filter(|&n| mounting_of(n) == mounting).collect();
-            (!members.is_empty()).then(|| MountingCheck { mounting, prediction: blocks.predict(&members) })
+            (!members.is_empty()).then(|| (mounting, blocks.predict(&members)))
         });
         Ok(Validity {
             probability: chi_squared_tail(fit.chi_squared, fit.degrees_of_freedom),
@@ -156,7 +147,7 @@ impl Validity {
     /// Mean [`LeftOutPrediction::score`] per reading when each mounting is predicted from all others: 1 and a little more for a
     /// true model, more for one that lacks a term or has too many.
     pub fn hold_out_score(&self) -> f64 {
-        let sum: f64 = self.mountings.iter().map(|m| m.prediction.score).sum();
+        let sum: f64 = self.mountings.iter().map(|(_, prediction)| prediction.score).sum();
         sum / (3.0 * self.plateaus.len() as f64)
     }
 }

@@ -85,7 +85,7 @@ impl Regression {
         let sum_of_squares = equations.redundant(b).norm_squared();
         let variance = sum_of_squares / (n - p) as f64;
         let covariance = equations.covariance() * variance;
-        Self { x: equations.solve(b.clone()).x, covariance, sum_of_squares, variance }
+        Self { x: equations.solve(b.clone()), covariance, sum_of_squares, variance }
     }
 }
 

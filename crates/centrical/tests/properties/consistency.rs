@@ -3,7 +3,7 @@
 use centrical::ThirdPosition;
 use centrical::plan::Normalised;
 use centrical::reduction::{NoiseModel, PlateauMean, Record, ReducedMounting, ScheduledPlateau};
-use centrical::simulate::{Coloured, Equipment, Losses, Machine, Recorder, Sensor, Simulation, Spikes};
+use centrical::simulate::{Chance, Coloured, Equipment, Machine, Recorder, Sensor, Simulation};
 use centrical::{Fit, MeasurementModel, Observation, PairRelation};
 use nalgebra::{DVector, Matrix3};
 
@@ -54,8 +54,8 @@ fn rough() -> Equipment {
         },
         recorder: Recorder {
             rate: 250.0,
-            spikes: Spikes { probability: 2e-4, size: 20.0 },
-            gaps: Losses { probability: 1e-3, length: 1.0 },
+            spikes: Chance { probability: 2e-4, size: 20.0 },
+            gaps: Chance { probability: 1e-3, size: 1.0 },
             repeats: 1e-4,
         },
         ..Equipment::default()

@@ -1,4 +1,4 @@
-use centrical::{hat, is_rotation, rotation, rotation_rate};
+use centrical::{is_rotation, rotation, rotation_rate};
 use nalgebra::Vector3;
 use proptest::prelude::*;
 
@@ -14,12 +14,12 @@ proptest! {
         prop_assert!((rotation(&v) * v - v).amax() < 1e-14);
     }
 
-    /// `d rotation(v) = hat(J dv) rotation(v)`, against central differences.
+    /// `d rotation(v) = hat(J dv) rotation(v)`, against central differences. The source's `hat` is the transpose of the usual matrix.
     #[test]
     fn rotation_rate_is_the_differential(v in vector(2.0), dv in vector(1.0)) {
         let h = 1e-5;
         let difference = (rotation(&(v + dv * h)) - rotation(&(v - dv * h))) / (2.0 * h);
-        let analytic = hat(&(rotation_rate(&v) * dv)) * rotation(&v);
+        let analytic = (rotation_rate(&v) * dv).cross_matrix().transpose() * rotation(&v);
         // Truncation h^2 |dv|^3 / 6 and rounding eps / h.
         prop_assert!((difference - analytic).amax() < 1e-9);
     }

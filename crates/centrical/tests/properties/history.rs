@@ -2,7 +2,7 @@
 
 use centrical::history::{
     Between, Curve, Likely, Point, Quantiles, Reading, Sameness, Series, SessionEstimates, StationTest, UnitDistance,
-    UnitSessions, UnitTrend,
+    UnitTrend,
 };
 use nalgebra::{DMatrix, DVector};
 
@@ -321,7 +321,7 @@ fn alike(values: &DMatrix<f64>, seed: u64) -> Vec<UnitDistance> {
     let (n, p) = values.shape();
     let session =
         |unit, _| SessionEstimates { values: values.row(unit).transpose(), covariance: DMatrix::identity(p, p) * 1e-4 };
-    UnitSessions { counts: &vec![1; n], session: &session }.distances(seed).unwrap()
+    UnitDistance::of_all(&vec![1; n], &session, seed).unwrap()
 }
 
 /// Of 80 sound plants of fifty units, four have a unit that stands out; more than twelve, in one case of ten thousand. A unit
@@ -486,7 +486,7 @@ fn found_among_unequal(
     };
     let sessions: Vec<Vec<SessionEstimates>> = (0..units).map(&mut unit).collect();
     let session = |unit: usize, t: usize| sessions[unit][t].clone();
-    let distances = UnitSessions { counts: &counts, session: &session }.distances(seed).unwrap();
+    let distances = UnitDistance::of_all(&counts, &session, seed).unwrap();
     (0..).zip(distances).filter(|(_, unit)| unit.probability < 0.05).map(|(n, _)| n).collect()
 }
 

@@ -6,8 +6,8 @@ use centrical::reduction::{NoiseModel, Record, ScheduledPlateau};
 use centrical::simulate::{Machine, Recorder, Sensor, Simulation};
 use centrical::uncertainty::{Compensated, FitMethod, MonteCarlo, Settings};
 use centrical::{
-    Centrifuge, Data, ErrorModel, Experiment, Extension, Law, MeasurementModel, Monomial, Mounting, NULL_HOLD,
-    Observation, PairRelation, ReferencePoint, SetPoint, Site, Term, Unit, Weight, unwatched,
+    Centrifuge, Data, ErrorModel, Experiment, Extension, Law, MeasurementModel, Monomial, Mounting, Observation,
+    PairRelation, Parameter, ReferencePoint, SetPoint, Site, Term, Unit, Weight, unwatched,
 };
 use centrical::{Position, ThirdPosition};
 use nalgebra::{DMatrix, Matrix3, Vector3};
@@ -76,11 +76,11 @@ fn covariance(scenario: &Scenario, visits: &[Visit]) -> DMatrix<f64> {
     let model = &scenario.model;
     let p = model.parameters().len();
     let mut rows = DMatrix::zeros(p + 3 * visits.len(), p);
-    rows.fill_diagonal(1.0 / NULL_HOLD);
+    rows.fill_diagonal(1.0 / Parameter::NULL_HOLD);
     for prior in model.priors() {
         // One row for the hold and the prior of the same parameter.
         let (j, typical) = (prior.parameter, model.parameters()[prior.parameter].typical);
-        rows[(j, j)] = (typical / prior.standard_uncertainty).hypot(1.0 / NULL_HOLD);
+        rows[(j, j)] = (typical / prior.standard_uncertainty).hypot(1.0 / Parameter::NULL_HOLD);
     }
     for (n, visit) in visits.iter().enumerate() {
         let l = model.linearise(&model.experiment().set_points[visit.candidate], &scenario.nominal);

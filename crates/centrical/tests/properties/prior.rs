@@ -37,7 +37,7 @@ fn what_rests_on_a_prior_is_said() {
     }
     let uses = fit.prior_uses();
     assert_eq!(uses.len(), 2);
-    assert!(uses.iter().all(|used| (0.5..=1.0).contains(&used.posterior_over_prior)), "{uses:?}");
+    assert!(uses.iter().all(|(_, ratio)| (0.5..=1.0).contains(ratio)), "{uses:?}");
     assert!(!fit.null_directions_held);
 }
 
@@ -64,7 +64,7 @@ fn a_prior_is_one_more_measurement() {
         }
         assert!((with.prior_share(k).unwrap() - share).abs() < 1e-5);
         assert!(!with.rests_on_prior(k), "the data alone determine it");
-        let ratio = with.prior_uses()[0].posterior_over_prior;
+        let ratio = with.prior_uses()[0].1;
         assert!((ratio - 1.0 / (1.0 + (sigma / spread).powi(2)).sqrt()).abs() < 1e-6);
         assert_eq!(with.degrees_of_freedom, without.degrees_of_freedom + 1);
     }

@@ -299,7 +299,7 @@ fn a_speed_that_runs_is_no_settling() {
             let (error, run) = ((mean.mean - stream.truth(k)).norm(), 2e-4 * stream.truth(k).norm());
             assert!(error < 0.1 * run + 5e-4, "{settling}, {length}, plateau {k}: {error} of {run}");
         }
-        let speeds = MeasuredSpeed::of_all(&stream.omegas, reduced.speed_readings());
+        let speeds = MeasuredSpeed::of_all(&stream.omegas, std::slice::from_ref(&reduced));
         for speed in speeds.into_iter().flatten() {
             let [slope, uncertainty] = speed.slope.expect("hundreds of reports");
             let error = slope - 1e-4 / length;
@@ -519,7 +519,7 @@ fn the_speed_of_an_interruption_is_not_that_of_the_plateau() {
         }
     }
     let reduced = run.record().reduce(Some(&telemetry), &run.schedule()).expect("all plateaus are there");
-    let speeds = MeasuredSpeed::of_all(&run.omegas, reduced.speed_readings());
+    let speeds = MeasuredSpeed::of_all(&run.omegas, std::slice::from_ref(&reduced));
     let shown = speeds[3].expect("it spins").speed / run.omegas[3];
     assert!((shown - 1.0).abs() < 1e-6, "{shown}");
 }

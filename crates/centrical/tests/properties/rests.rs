@@ -1,6 +1,6 @@
 //! Records of a unit that is turned by hand or on a table: the rests that are found, and the calibration by them.
 
-use centrical::reduction::{CoarseScale, PlateauMean, Record, ReductionError, RepeatedRests, RestRecord, Rests};
+use centrical::reduction::{CoarseScale, PlateauMean, Record, ReductionError, RepeatedRests, Rests};
 use centrical::uncertainty::{Level, Rivals, chance_of_residuals};
 use centrical::{
     Calibration, Centrifuge, Data, ErrorModel, Experiment, Extension, Fit, MeasurementModel, Mounting, Observation,
@@ -215,7 +215,7 @@ fn problem(positions: Vec<Position>, means: &[(Vector3<f64>, Matrix3<f64>)]) -> 
 
 /// The rests of a made record and the model of them.
 fn problem_of(made: &Made) -> (MeasurementModel, Vec<Observation>) {
-    problem_of_rests(&Rests::of(&[made.record.as_slice().into()], &unwatched).unwrap().means.concat())
+    problem_of_rests(&Rests::of(&[(made.record.as_slice(), None)], &unwatched).unwrap().means.concat())
 }
 
 fn problem_of_rests(rests: &[PlateauMean]) -> (MeasurementModel, Vec<Observation>) {
@@ -260,7 +260,7 @@ fn rests_are_found_as_they_were_made() {
     for making in [BY_HAND, ON_A_TABLE, Making { bumps: 0.0, lasting: [1.2, 2.0], ..BY_HAND }] {
         for _ in 0..10 {
             let made = made(&making, &mut random);
-            let found = Rests::of(&[made.record.as_slice().into()], &unwatched).unwrap().means.concat();
+            let found = Rests::of(&[(made.record.as_slice(), None)], &unwatched).unwrap().means.concat();
             // A bump may part one rest in two.
             let bumped = if making.bumps > 0.0 { making.rests / 4 } else { 0 };
             assert!((making.rests..=making.rests + bumped).contains(&found.len()), "{}", found.len());
@@ -288,7 +288,7 @@ fn rests_of_few_samples_or_stamps_are_found() {
         let mut sum = 0.0;
         for _ in 0..10 {
             let made = made(&making, &mut random);
-            let found = Rests::of(&[coarse(&made.record).as_slice().into()], &unwatched).unwrap().means.concat();
+            let found = Rests::of(&[(coarse(&made.record).as_slice(), None)], &unwatched).unwrap().means.concat();
             assert!((making.rests * 9 / 10..=making.rests).contains(&found.len()), "{}", found.len());
             let (model, observations) = problem_of_rests(&found);
             sum += squared_error(&model, &exact(&model, &observations).unwrap(), made.truth);
@@ -312,7 +312,7 @@ fn rests_at_the_end_of_the_range_are_refused() {
         };
         let end = rests.iter().map(mean).fold(f64::MIN, f64::max) + 0.5 * ON_A_TABLE.white[axis];
         record.f_z[axis].iter_mut().for_each(|f| *f = f.min(end));
-        let refused = Rests::of(&[record.as_slice().into()], &unwatched).unwrap_err();
+        let refused = Rests::of(&[(record.as_slice(), None)], &unwatched).unwrap_err();
         let ReductionError::Saturated { axis: found, value, .. } = refused else { panic!("{refused}") };
         assert_eq!((found, value), (axis, end));
     }
@@ -329,7 +329,7 @@ fn rests_that_count_twice_are_found() {
                 let mut record = first;
                 record.t.extend(second.t.iter().map(|t| t - start + end));
                 (0..3).for_each(|axis| record.f_z[axis].extend(&second.f_z[axis]));
-                let means = Rests::of(&[record.as_slice().into()], &unwatched).unwrap().means.concat();
+                let means = Rests::of(&[(record.as_slice(), None)], &unwatched).unwrap().means.concat();
                 let noise = |rest: &PlateauMean| rest.white_variance.inf(&rest.covariance.diagonal()).map(f64::sqrt);
                 means.iter().map(|rest| (rest.mean, noise(rest))).collect::<Vec<_>>()
             };
@@ -353,13 +353,13 @@ fn rests_that_count_twice_are_found() {
 fn neither_rests_nor_motion_are_invented() {
     let mut random = Random::new(6);
     let still = made(&Making { rests: 1, lasting: [60.0, 60.0], bumps: 0.0, ..BY_HAND }, &mut random);
-    assert_eq!(Rests::of(&[still.record.as_slice().into()], &unwatched).unwrap().means.concat().len(), 1);
+    assert_eq!(Rests::of(&[(still.record.as_slice(), None)], &unwatched).unwrap().means.concat().len(), 1);
     let count = 6000;
     let t: Vec<f64> = (0..count).map(|i| f64::from(i) / RATE).collect();
     let turned = |phase: f64| t.iter().map(|t| GRAVITY * (1.7 * t + phase).sin() + 0.01 * random.normal()).collect();
     let mut turned = turned;
     let moving = Record { f_z: [turned(0.0), turned(1.6), turned(0.3)], t: t.clone() };
-    assert!(Rests::of(&[moving.as_slice().into()], &unwatched).unwrap().means.concat().is_empty());
+    assert!(Rests::of(&[(moving.as_slice(), None)], &unwatched).unwrap().means.concat().is_empty());
 }
 
 /// Readings in counts: scale and bias to what misalignment leaves, from the rests alone.
@@ -373,7 +373,7 @@ fn counts_become_accelerations() {
             *value = *value * scale[axis] + bias[axis];
         }
     }
-    let means: Vec<_> = Rests::of(&[made.record.as_slice().into()], &unwatched)
+    let means: Vec<_> = Rests::of(&[(made.record.as_slice(), None)], &unwatched)
         .unwrap()
         .means
         .concat()
@@ -394,8 +394,7 @@ fn counts_become_accelerations() {
 
 /// Mean variance of rests, or arcs, along the force times their number of samples: in the direction in which the size of a reading changes.
 pub fn noise_along_force(made: &Made, radius: Option<f64>) -> f64 {
-    let rests =
-        Rests::of(&[RestRecord { samples: made.record.as_slice(), turning_radius: radius }], &unwatched).unwrap();
+    let rests = Rests::of(&[(made.record.as_slice(), radius)], &unwatched).unwrap();
     let (gain, bias) = gain_and_bias(made.truth);
     let back = gain.try_inverse().unwrap();
     let of = |rest: &PlateauMean| {
@@ -446,7 +445,7 @@ fn a_tremor_shortens_no_rest() {
         let made = made(&few, &mut random);
         let (gain, bias) = gain_and_bias(made.truth);
         let back = gain.try_inverse().unwrap();
-        for rest in Rests::of(&[made.record.as_slice().into()], &unwatched).unwrap().means.concat() {
+        for rest in Rests::of(&[(made.record.as_slice(), None)], &unwatched).unwrap().means.concat() {
             let force = back * (rest.mean - bias);
             let along = back.transpose() * force.normalize();
             squares.push((force.norm() - GRAVITY).powi(2) / along.dot(&(rest.covariance * along)));
@@ -530,8 +529,7 @@ fn judged(making: &Making, random: &mut Random) -> Judged {
 
 /// A record of slow rotation where the distance from its axis is stated [m].
 pub fn judged_record(made: &Made, radius: Option<f64>) -> Judged {
-    let found =
-        Rests::of(&[RestRecord { samples: made.record.as_slice(), turning_radius: radius }], &unwatched).unwrap();
+    let found = Rests::of(&[(made.record.as_slice(), radius)], &unwatched).unwrap();
     // A rectangular distribution of each coordinate up to the largest distance.
     let from_axes = radius.map_or(0.0, |radius| radius / 3_f64.sqrt());
     let rests = found.means.concat();

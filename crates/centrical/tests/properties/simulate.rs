@@ -283,7 +283,7 @@ fn nonsense_is_refused() {
     equipment.recorder.rate = 0.0;
     assert_eq!(refusal(&x, &equipment), "recorder.rate: found 0, expected a rate above 0, from 1 mHz to 10 MHz");
     let mut equipment = perfect;
-    equipment.recorder.gaps.length = 0.5;
+    equipment.recorder.gaps.size = 0.5;
     assert_eq!(
         refusal(&x, &equipment),
         "recorder.gaps.length: found 0.5, expected a number of samples, 1 to a million"

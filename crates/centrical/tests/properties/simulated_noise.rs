@@ -5,7 +5,7 @@
 
 use centrical::ThirdPosition::AxisOneUp;
 use centrical::reduction::Record;
-use centrical::simulate::{Coloured, Equipment, Losses, Machine, Recorder, Sensor, Simulation, Spikes};
+use centrical::simulate::{Chance, Coloured, Equipment, Machine, Recorder, Sensor, Simulation};
 use centrical::{MeasurementModel, PairRelation, SetPoint};
 
 use crate::common::{experiment, kozlov};
@@ -159,7 +159,7 @@ fn output_is_saturated_and_quantised() {
 
 #[test]
 fn spikes_come_as_often_and_as_large_as_set() {
-    let spikes = Spikes { probability: 2e-3, size: 10.0 };
+    let spikes = Chance { probability: 2e-3, size: 10.0 };
     let recorder = Recorder { spikes, ..Recorder::default() };
     let record = rest(6, 0, 2e4, Sensor::default(), recorder);
     let n = record.t.len() as f64;
@@ -177,7 +177,7 @@ fn spikes_come_as_often_and_as_large_as_set() {
 
 #[test]
 fn gaps_and_repeats_come_as_set() {
-    let gaps = Losses { probability: 1e-3, length: 4.0 };
+    let gaps = Chance { probability: 1e-3, size: 4.0 };
     let recorder = Recorder { gaps, repeats: 1e-3, ..Recorder::default() };
     let record = rest(7, 0, 2e4, Sensor { white: 1e-3, ..Sensor::default() }, recorder);
     let steps: Vec<f64> = record.t.windows(2).map(|pair| ((pair[1] - pair[0]) * 100.0).round()).collect();

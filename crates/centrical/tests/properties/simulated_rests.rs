@@ -2,7 +2,7 @@
 
 use centrical::ThirdPosition::AxisOneUp;
 use centrical::reduction::{Record, Rests};
-use centrical::simulate::{Bumps, Coloured, Equipment, Hand, Sensor, SimulatedTumble, Simulation, Tremor};
+use centrical::simulate::{Chance, Coloured, Equipment, Hand, Sensor, SimulatedTumble, Simulation};
 use centrical::{Experiment, MeasurementModel, Mounting, PairRelation, Position, SetPoint, unwatched};
 use nalgebra::Vector3;
 
@@ -16,8 +16,8 @@ const HAND: Hand = Hand {
     turn: 0.8,
     turn_spread: 1.0,
     shake: 1.0,
-    tremor: Tremor { deviation: 1e-3, time: 0.3 },
-    bumps: Bumps { probability: 0.1, size: 3.0 },
+    tremor: Coloured { deviation: 1e-3, time: 0.3 },
+    bumps: Chance { probability: 0.1, size: 3.0 },
     bias_change: 5e-3,
 };
 
@@ -56,7 +56,7 @@ fn record(tumble: &SimulatedTumble) -> Record {
 #[test]
 fn a_rest_reads_what_the_model_says() {
     let model = kozlov(with_rests(9, 3));
-    let hand = Hand { tremor: Tremor::default(), bumps: Bumps::default(), shake: 0.0, ..HAND };
+    let hand = Hand { tremor: Coloured::default(), bumps: Chance::default(), shake: 0.0, ..HAND };
     let equipment = Equipment { hand, ..Equipment::default() };
     let truth = Simulation::draw_truth(&model, 1.0, 3);
     let simulation = Simulation::new(&model, &truth, &equipment, 3).unwrap();
@@ -102,7 +102,7 @@ fn the_means_of_simulated_rests_are_as_uncertain_as_stated() {
         let simulation = Simulation::new(&model, &truth, &equipment, seed).unwrap();
         let tumble = tumble(&simulation, &model);
         let (made, samples) = (tumble.rests(), record(&tumble));
-        let found = Rests::of(&[samples.as_slice().into()], &unwatched).unwrap().means.concat();
+        let found = Rests::of(&[(samples.as_slice(), None)], &unwatched).unwrap().means.concat();
         // A bump may part one rest in two.
         assert!((22..=26).contains(&found.len()), "{seed}: {}", found.len());
         for rest in &found {
@@ -133,7 +133,8 @@ fn each_imperfection_has_draws_of_its_own() {
     let (exact, free) = (Simulation::draw_truth(&with, 0.0, 7), with.parameters().find("theta_1[r1]").unwrap());
     assert!(exact[known] != 0.0 && exact[known].abs() < 0.01 && exact[free] == 0.0);
     let noisy = Sensor { white: 0.01, ..Sensor::default() };
-    let steady = Equipment { hand: Hand { tremor: Tremor::default(), ..HAND }, sensor: noisy, ..Equipment::default() };
+    let steady =
+        Equipment { hand: Hand { tremor: Coloured::default(), ..HAND }, sensor: noisy, ..Equipment::default() };
     let trembling = Equipment { hand: HAND, ..steady };
     let windows = |equipment: &Equipment| {
         let simulation = Simulation::new(&with, &both, equipment, 7).unwrap();

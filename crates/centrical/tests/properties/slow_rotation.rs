@@ -1,6 +1,6 @@
 //! Records of a unit that turns slowly and never rests: the arcs that are found, and the calibration by them.
 
-use centrical::reduction::{Arc, Record, RestRecord, Rests};
+use centrical::reduction::{Arc, Record, Rests};
 use centrical::unwatched;
 use nalgebra::{Rotation3, Vector3};
 
@@ -147,9 +147,8 @@ fn slow_rotation_shows_what_rests_show() {
     let rotation = Rotation { rate: 2.5_f64.to_radians(), way: Way::Poles, duration: 600.0, radius: 0.0 };
     let mut random = Random::new(43);
     let made = turned(&ON_A_TABLE, &rotation, &mut random);
-    assert!(Rests::of(&[made.record.as_slice().into()], &unwatched).unwrap().means.concat().is_empty());
-    let found =
-        Rests::of(&[RestRecord { samples: made.record.as_slice(), turning_radius: Some(0.0) }], &unwatched).unwrap();
+    assert!(Rests::of(&[(made.record.as_slice(), None)], &unwatched).unwrap().means.concat().is_empty());
+    let found = Rests::of(&[(made.record.as_slice(), Some(0.0))], &unwatched).unwrap();
     let arcs: Vec<Arc> = found.means.concat().iter().map(|rest| rest.arc.unwrap()).collect();
     let fastest = arcs.iter().map(|arc| arc.rate).fold(0.0, f64::max);
     // 2.8 deg/s at most, and what noise adds; 600 s in arcs of 5 s and more.

@@ -36,16 +36,16 @@ fn measured(
 ) -> Vec<(f64, f64, Option<MeasuredSpeed>)> {
     let values = Simulation::draw_truth(model, 1.0, seed);
     let simulation = Simulation::new(model, &values, equipment, seed).unwrap();
-    let (mut set, mut of_truth, mut readings) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut set, mut of_truth, mut all) = (Vec::new(), Vec::new(), Vec::new());
     for m in 0..mountings {
         let mounting = simulation.mounting(m);
         let reduced = reduced(model, &simulation, m, is_counted.then_some(equipment.counter.per_revolution));
         let set_points = model.experiment().set_points.iter().filter(|s| s.mounting == m);
         set.extend(set_points.map(|s| s.omega));
         of_truth.extend(mounting.plateaus().iter().map(|p| p.omega.abs()));
-        readings.extend_from_slice(reduced.speed_readings());
+        all.push(reduced);
     }
-    let speeds = MeasuredSpeed::of_all(&set, &readings);
+    let speeds = MeasuredSpeed::of_all(&set, &all);
     let all = set.into_iter().zip(of_truth).zip(speeds).map(|((set, truth), speed)| (set, truth, speed));
     all.filter(|(set, ..)| *set != 0.0).collect()
 }
@@ -89,7 +89,8 @@ fn pulses_of_another_record_leave_no_speeds() {
     let (record, mut located) = located(&model, &simulation, 0);
     let shown = |located: &Located| {
         let reduced = located.clone().averaged(record.as_slice()).unwrap();
-        reduced.speed_readings().iter().flatten().count()
+        let set: Vec<f64> = model.experiment().set_points.iter().map(|s| s.omega).collect();
+        MeasuredSpeed::of_all(&set, &[reduced]).iter().flatten().count()
     };
     located.time_telemetry(&telemetry_of(&simulation, 0));
     assert_eq!(shown(&located), 7);

@@ -42,14 +42,14 @@ fn a_long_mounting_is_predicted_like_any_other() {
     let data = session(&model, &truth(&model, 1.0, &mut random), &mut random);
     let all = Data::new(&model, data.clone()).unwrap();
     let calibration = Calibration::exact(&all).unwrap();
-    let check = calibration.validity().unwrap().mountings[0];
+    let (_, prediction) = calibration.validity().unwrap().mountings[0];
     let set_points = &model.experiment().set_points;
     let others: Vec<_> = data.into_iter().filter(|o| set_points[o.set_point].mounting != 0).collect();
     let without = crate::common::exact(&model, &others).unwrap();
     let fall = calibration.fit().chi_squared - without.chi_squared;
-    assert!((check.prediction.statistic - fall).abs() < 1e-2, "{} {fall}", check.prediction.statistic);
+    assert!((prediction.statistic - fall).abs() < 1e-2, "{} {fall}", prediction.statistic);
     let lost = calibration.fit().observability().rank() - without.observability().rank();
-    assert_eq!(check.prediction.degrees_of_freedom, 63 - lost);
+    assert_eq!(prediction.degrees_of_freedom, 63 - lost);
 }
 
 /// Leverages add up to the unknowns; a block's statistic is the fall of chi^2 in a fit without it.
@@ -63,15 +63,14 @@ fn statistics_are_what_a_fit_without_the_block_shows() {
     let leverage: f64 = validity.plateaus.iter().map(|p| 3.0 * p.leverage).sum();
     assert!((leverage - 49.0).abs() < 1e-6, "{leverage}");
     let set_points = &model.experiment().set_points;
-    for check in &validity.mountings {
-        let others: Vec<_> =
-            data.iter().filter(|o| set_points[o.set_point].mounting != check.mounting).cloned().collect();
+    for (mounting, prediction) in &validity.mountings {
+        let others: Vec<_> = data.iter().filter(|o| set_points[o.set_point].mounting != *mounting).cloned().collect();
         let without = crate::common::exact(&model, &others).unwrap();
         let fall = whole.chi_squared - without.chi_squared;
         // The weights follow the estimate, by a millionth; a chi^2 of 275 hardly.
-        assert!((check.prediction.statistic - fall).abs() < 1e-2, "{} {fall}", check.prediction.statistic);
+        assert!((prediction.statistic - fall).abs() < 1e-2, "{} {fall}", prediction.statistic);
         let lost = whole.observability().rank() - without.observability().rank();
-        assert_eq!(check.prediction.degrees_of_freedom, 27 - lost);
+        assert_eq!(prediction.degrees_of_freedom, 27 - lost);
     }
     for n in [0, 17, 53, 107] {
         let others: Vec<_> = data.iter().enumerate().filter(|(m, _)| *m != n).map(|(_, o)| o.clone()).collect();

@@ -299,7 +299,7 @@ fn geometry_excluded_is_geometry_estimated() {
     let free_of_geometry = |j: usize| eliminator.redundant(&rows.column(j).into_owned());
     let columns: Vec<DVector<f64>> = own.iter().map(|&j| free_of_geometry(j)).collect();
     let equations = least_squares(&DMatrix::from_columns(&columns));
-    let excluded = equations.solve(free_of_geometry(p)).x;
+    let excluded = equations.solve(free_of_geometry(p));
     let covariance = equations.covariance();
 
     assert_eq!((own.len(), geometry.len()), (21, 28));

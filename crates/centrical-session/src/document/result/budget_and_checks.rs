@@ -229,7 +229,7 @@ impl ValiditySummary {
             noise_at_most: None,
             of_strongest_noise: None,
             outlying,
-            mountings: validity.mountings.iter().map(|m| prediction(m.mounting, &m.prediction)).collect(),
+            mountings: validity.mountings.iter().map(|(mounting, of)| prediction(*mounting, of)).collect(),
             patterns_tested: patterns.len(),
             patterns: reported.map(|pattern| PatternSummary::new(experiment, pattern)).collect(),
             rivals_tested: 0,

@@ -2,8 +2,7 @@
 
 use centrical::uncertainty::Rivals;
 use centrical::{
-    Calibration, Fit, FitError, MeasurementModel, Mounting, OnProgress, Position, PriorUse, SetPoint, Termination,
-    advance,
+    Calibration, Fit, FitError, MeasurementModel, Mounting, OnProgress, Position, Prior, SetPoint, Termination, advance,
 };
 use nalgebra::{Matrix3, Vector3};
 
@@ -88,13 +87,10 @@ impl CalibrationResult {
     }
 }
 
-impl From<&PriorUse> for PriorSummary {
-    fn from(used: &PriorUse) -> Self {
-        Self {
-            mean: used.prior.mean,
-            standard_uncertainty: used.prior.standard_uncertainty,
-            posterior_over_prior: used.posterior_over_prior,
-        }
+impl From<&(Prior, f64)> for PriorSummary {
+    fn from((prior, posterior_over_prior): &(Prior, f64)) -> Self {
+        let Prior { mean, standard_uncertainty, .. } = *prior;
+        Self { mean, standard_uncertainty, posterior_over_prior: *posterior_over_prior }
     }
 }
 
@@ -227,7 +223,7 @@ impl ParameterEstimate {
             unit: parameter.unit.clone(),
             group: parameter.group,
             estimable: standard_uncertainty.is_some(),
-            prior: fit.prior_uses().iter().find(|used| used.prior.parameter == j).map(PriorSummary::from),
+            prior: fit.prior_uses().iter().find(|(prior, _)| prior.parameter == j).map(PriorSummary::from),
             prior_share: if model.priors().is_empty() { None } else { fit.prior_share(j) },
             rests_on_prior: fit.rests_on_prior(j),
         }

@@ -3,7 +3,7 @@
 use std::borrow::Borrow;
 use std::collections::{BTreeMap, BTreeSet};
 
-use centrical::history::{BatchTest, Between, Capability, Curve, Series, UnitSessions, UnitTrend};
+use centrical::history::{BatchTest, Between, Capability, Curve, Series, UnitDistance, UnitTrend};
 use centrical::uncertainty::family_wise;
 use rayon::prelude::*;
 
@@ -56,7 +56,7 @@ pub fn units_history(compared: &ComparedUnits, request: &UnitsHistoryRequest) ->
     }
     let by_parameter = by_parameter(&stations, &lasts, &names, &all);
     let (tested, few): (Vec<&AtStation>, Vec<&AtStation>) =
-        stations.iter().partition(|units| units.len() >= UnitSessions::FEWEST_UNITS);
+        stations.iter().partition(|units| units.len() >= UnitDistance::FEWEST_UNITS);
     let is_by_batch = parameters.iter().any(|p| p.batch_probability.is_some());
     let is_over_time = by_parameter.iter().any(|of| !of.findings.is_empty());
     let kinds = [!tested.is_empty(), is_over_time, is_by_batch].into_iter().filter(|is_tested| *is_tested).count();
@@ -233,9 +233,8 @@ fn outlying(
             let calibrated = units[unit].1[t];
             calibrated.stated_estimates(places.in_list(&calibrated.parameters))
         };
-        let sessions = UnitSessions { counts: &counts, session: &session };
         let numbers = units.iter().map(|(number, _)| *number);
-        let distances = sessions.distances(SEED).into_iter().flatten();
+        let distances = UnitDistance::of_all(&counts, &session, SEED).into_iter().flatten();
         let found = numbers.zip(distances).map(|(number, distance)| {
             let mut scores: Vec<(String, f64)> =
                 names.iter().map(|&name| name.to_owned()).zip(distance.scores).collect();

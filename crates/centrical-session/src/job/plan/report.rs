@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use centrical::plan::{
-    Candidates, Criterion, Effort, FrontierPoint, Goal, Plan, PlanError, Prediction, Rationale, Reached, Robustness,
-    Schedule, Task, Visit, VisitReason,
+    Candidates, Criterion, Effort, Goal, Plan, PlanError, Prediction, Rationale, Reached, Robustness, Schedule, Task,
+    Visit, VisitReason,
 };
 use centrical::{Experiment, Group, OnProgress, SetPoint};
 
@@ -201,14 +201,14 @@ fn frontier_rows(
     let uniform = with_set_points(candidates, &uniform_set_points(experiment));
     let normalised = with_set_points(candidates, &normalised_set_points(experiment, &request.levels));
     let root = |found: Option<(_, f64)>| found.map(|(_, value): (Schedule, f64)| value.sqrt());
-    let row = |point: FrontierPoint| {
+    let row = |(time, plan): (f64, Plan)| {
         Ok(FrontierRow {
-            time: point.time,
-            best: point.plan.criterion.sqrt(),
-            bound: point.plan.bound.sqrt(),
-            uniform: root(uniform.uniform(criterion, point.time)?),
+            time,
+            best: plan.criterion.sqrt(),
+            bound: plan.bound.sqrt(),
+            uniform: root(uniform.uniform(criterion, time)?),
             // Its speeds are its own, and so is its duration.
-            normalised: if has_arm { root(normalised.filled(criterion, point.time)?) } else { None },
+            normalised: if has_arm { root(normalised.filled(criterion, time)?) } else { None },
         })
     };
     let rows = points.and_then(|points| points.into_iter().map(row).collect());

@@ -34,8 +34,7 @@ pub(super) fn pooled(session: &Session, mountings: Vec<OfRecord>) -> Result<Redu
     let experiment = &session.experiment;
     let on_arm = experiment.set_points.iter().filter(|set_point| experiment.is_on_arm(set_point.mounting));
     let set: Vec<f64> = on_arm.map(|set_point| set_point.omega).collect();
-    let readings: Vec<_> = reduced.iter().flat_map(|mounting| mounting.speed_readings().iter().copied()).collect();
-    let speeds = MeasuredSpeed::of_all(&set, &readings);
+    let speeds = MeasuredSpeed::of_all(&set, &reduced);
     refuse_other_units(session, &speeds)?;
     Ok(Reduced {
         speeds,

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 use std::path::Path;
 
 use centrical::OnProgress;
-use centrical::reduction::{Record, ReductionError, RestRecord, Rests};
+use centrical::reduction::{Record, RecordSlice, ReductionError, Rests};
 use centrical_table::Extent;
 use nalgebra::Vector3;
 
@@ -13,12 +13,16 @@ use crate::experiment::{KnownAttitudes, LARGEST_SCALE_ERROR, RecordedRests, Rest
 use crate::record::read_records;
 use crate::reduced::{ReducedPlateau, rest_rows};
 
-/// The rests of all records: one search for a tumble and for a session. The colour of the noise is pooled over all of them. Messages
+/// The rests of all records, each with its turning radius: one search for a tumble and for a session. The colour of the noise is pooled over all of them. Messages
 /// name `file`.
 ///
 /// # Errors
 /// If a record is invalid, or there are fewer than two rests: a single one shows nothing. [`Error::Stopped`].
-pub(crate) fn find_rests(records: &[RestRecord], file: &Path, progress: OnProgress) -> Result<Rests, Error> {
+pub(crate) fn find_rests(
+    records: &[(RecordSlice, Option<f64>)],
+    file: &Path,
+    progress: OnProgress,
+) -> Result<Rests, Error> {
     let refused = |source| match source {
         ReductionError::Stopped(stopped) => stopped.into(),
         source => Error::reduction(file, 0, source),
@@ -33,7 +37,7 @@ pub(crate) fn find_rests(records: &[RestRecord], file: &Path, progress: OnProgre
             return Err(Error::content(file, Place::Whole, found, expected));
         }
         let found = format!("{count} {stretches} in which the unit rests");
-        let expected = if records.iter().any(|record| record.turning_radius.is_some()) {
+        let expected = if records.iter().any(|(_, turning_radius)| turning_radius.is_some()) {
             "a unit that is turned, left alone for a second or more, and turned again; or slow rotation through attitudes that show all coefficients"
         } else {
             "a unit that is turned, left alone for a second or more, and turned again; slow rotation counts with --turning-radius, or turning_radius in [[tumble]]"
@@ -45,9 +49,9 @@ pub(crate) fn find_rests(records: &[RestRecord], file: &Path, progress: OnProgre
 
 /// Hundredths of the samples that repeat all three readings of the one before, if these are more than half: it is noise that
 /// shows where a rest ends.
-fn without_noise(records: &[RestRecord]) -> Option<usize> {
+fn without_noise(records: &[(RecordSlice, Option<f64>)]) -> Option<usize> {
     let (mut repeated, mut all) = (0, 0);
-    for [x, y, z] in records.iter().map(|record| record.samples.f_z) {
+    for [x, y, z] in records.iter().map(|(samples, _)| samples.f_z) {
         let is_same = |k: &usize| x[*k] == x[k - 1] && y[*k] == y[k - 1] && z[*k] == z[k - 1];
         repeated += (1..x.len()).filter(is_same).count();
         all += x.len().saturating_sub(1);
@@ -83,9 +87,7 @@ pub(crate) fn with_all_rests<'s>(
         let averaged = session.rests().map(ReducedPlateau::from).collect();
         return Ok((Cow::Borrowed(session), averaged));
     };
-    let records: Vec<RestRecord> = (read.iter())
-        .map(|(record, turning_radius)| RestRecord { samples: record.as_slice(), turning_radius: *turning_radius })
-        .collect();
+    let records: Vec<_> = read.iter().map(|(record, radius)| (record.as_slice(), *radius)).collect();
     let Rests { means, noise_at_most } = find_rests(&records, file, progress)?;
     let mut found = means.into_iter();
     let mut rests = Vec::new();

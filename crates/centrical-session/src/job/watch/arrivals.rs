@@ -358,8 +358,7 @@ impl<'s> Watch<'s> {
         let set_points = self.session.experiment.set_points.iter().enumerate();
         let (there, set): (Vec<usize>, Vec<f64>) =
             set_points.filter(|(_, s)| s.mounting == mounting).map(|(n, s)| (n, s.omega)).unzip();
-        let readings = reduced.speed_readings();
-        let speeds = MeasuredSpeed::of_all(&set[..readings.len().min(set.len())], readings);
+        let speeds = MeasuredSpeed::of_all(&set, std::slice::from_ref(reduced));
         self.speeds.extend(there.into_iter().zip(speeds).filter_map(|(n, speed)| Some((n, speed?))));
     }
 

@@ -156,7 +156,7 @@ impl Fitted {
             let design = DMatrix::from_fn(kept.len(), columns.len(), |row, column| columns[column][kept[row]]);
             let of_kept = |values: &[f64]| DVector::from_fn(kept.len(), |row, _| values[kept[row]]);
             let equations = (kept.len() > columns.len()).then(|| LeastSquares::of_columns(design.clone())).flatten()?;
-            let coefficients = equations.solve(of_kept(values)).x;
+            let coefficients = equations.solve(of_kept(values));
             let residual =
                 |k: &usize| values[*k] - columns.iter().zip(&coefficients).map(|(c, x)| c[*k] * x).sum::<f64>();
             let residuals: Vec<f64> = kept.iter().map(residual).collect();
@@ -167,7 +167,7 @@ impl Fitted {
             if good.len() == kept.len() || round == ROUNDS {
                 let (variance, degrees_of_freedom) = scatter(&residuals, columns.len());
                 let further = of_kept(further);
-                let beside = &further - design * equations.solve(further.clone()).x;
+                let beside = &further - design * equations.solve(further.clone());
                 let further = coefficient_beside(&beside, columns.len(), &residuals);
                 let gain = equations.standard_uncertainties()[0].powi(2);
                 return Some(Self { value: coefficients[0], gain, deviation, variance, degrees_of_freedom, further });
