@@ -14,15 +14,14 @@ mod corrected;
 mod means;
 mod rows;
 mod scale;
-mod sessions;
 
 use nalgebra::{Cholesky, DMatrix};
 use rayon::prelude::*;
 
 use self::component::{Component, Known};
+use self::corrected::UnitSessions;
 use self::means::UnitMeans;
 use self::rows::Rows;
-use self::sessions::UnitSessions;
 use super::together::SessionEstimates;
 use crate::statistics::Random;
 use crate::statistics::chi_squared_tail;

@@ -38,11 +38,6 @@ impl Series {
         Some(Self { points: order.iter().map(|&i| points[i]).collect(), shared: shared.select_rows(&order) })
     }
 
-    /// `points` without common errors; `None` as of [`Series::new`].
-    pub fn independent(points: &[Point]) -> Option<Self> {
-        Self::new(points, &DMatrix::zeros(points.len(), 0))
-    }
-
     /// The points, in the order of time.
     pub fn points(&self) -> &[Point] {
         &self.points

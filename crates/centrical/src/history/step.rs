@@ -31,11 +31,14 @@ impl Series {
 
 #[cfg(test)]
 mod tests {
+    use nalgebra::DMatrix;
+
     use super::*;
 
     fn series(values: &[f64]) -> Series {
         let point = |(n, value): (usize, &f64)| Point { time: n as f64, value: *value, variance: 1.0 };
-        Series::independent(&values.iter().enumerate().map(point).collect::<Vec<_>>()).unwrap()
+        let points: Vec<Point> = values.iter().enumerate().map(point).collect();
+        Series::new(&points, &DMatrix::zeros(points.len(), 0)).unwrap()
     }
 
     /// A repair is a step where it was made; a drift and scatter are not.

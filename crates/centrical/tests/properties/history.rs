@@ -47,7 +47,7 @@ fn sessions_without_scatter_have_a_slope_and_its_probability() {
     let quantiles = Quantiles::default();
     for (slope, probability) in [(0.0, 1.0), (2.0, 0.0)] {
         let points = [0.0, 1.0, 2.0].map(|time| Point { time, value: 5.0 + slope * time, variance: 0.25 });
-        let series = Series::independent(&points).unwrap();
+        let series = Series::new(&points, &DMatrix::zeros(points.len(), 0)).unwrap();
         let between = alone(&series, Curve::Line);
         let likely = Likely::of(std::slice::from_ref(&series), Curve::Line, &quantiles).unwrap();
         let evolution = series.evolution(Curve::Line, &between, &likely, &quantiles).unwrap();
@@ -114,7 +114,7 @@ fn unequal_uncertainties_raise_no_drift() {
                 Point { time: f64::from(n), value, variance: u * u }
             })
             .collect();
-        let series = Series::independent(&points).unwrap();
+        let series = Series::new(&points, &DMatrix::zeros(points.len(), 0)).unwrap();
         let between = alone(&series, Curve::Line);
         let likely = Likely::of(std::slice::from_ref(&series), Curve::Line, &quantiles).unwrap();
         let slope = series.evolution(Curve::Line, &between, &likely, &quantiles).unwrap().slope().unwrap();

@@ -1,6 +1,7 @@
 //! The component between sessions, level and slope beside metafor 3.8-1 (R), which `metafor/generate.R` calls; Welch's test beside R.
 
 use centrical::history::{BatchTest, Between, Curve, Likely, Point, Quantiles, Series};
+use centrical::nalgebra::DMatrix;
 
 const POINTS: &str = include_str!("metafor/points.csv");
 const RESULTS: &str = include_str!("metafor/metafor.csv");
@@ -27,7 +28,8 @@ fn every_row_of_metafor() {
     for line in RESULTS.lines().skip(1) {
         let cells: Vec<&str> = line.split(',').map(str::trim).collect();
         let number = |column: usize| cells[column].parse::<f64>().unwrap();
-        let series = Series::independent(&points(cells[0].parse().unwrap())).unwrap();
+        let points = points(cells[0].parse().unwrap());
+        let series = Series::new(&points, &DMatrix::zeros(points.len(), 0)).unwrap();
         let curve = if cells[1] == "line" { Curve::Line } else { Curve::Constant };
         let quantiles = Quantiles::default();
         let between = Between::of(std::slice::from_ref(&series), curve, 0.95).unwrap();

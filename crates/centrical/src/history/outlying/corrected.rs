@@ -14,8 +14,15 @@ use rayon::prelude::*;
 
 use super::component::{Component, Known};
 use super::rows::{Rows, add_scaled};
-use super::sessions::UnitSessions;
 use crate::history::together::SessionEstimates;
+
+/// The sessions of units of one type.
+pub struct UnitSessions<'a> {
+    /// Number of sessions of each unit, one or more.
+    pub counts: &'a [usize],
+    /// Session `t` of a unit, in the order of time: `p` values and the covariance of their errors as it states them, made when it is asked for.
+    pub session: &'a (dyn Fn(usize, usize) -> SessionEstimates + Sync),
+}
 
 /// Fewer differences say nothing.
 const FEWEST_DIFFERENCES: usize = 10;

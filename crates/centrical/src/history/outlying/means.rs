@@ -3,8 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
-use super::corrected::Corrected;
-use super::sessions::UnitSessions;
+use super::corrected::{Corrected, UnitSessions};
 
 /// What units are by their sessions.
 pub struct UnitMeans {
