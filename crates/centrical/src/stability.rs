@@ -37,6 +37,6 @@ pub use estimator::Estimator;
 pub use grid::Grid;
 pub use phase::{BridgedGaps, Phase};
 pub use power_law::PowerLaw;
-pub use spectrum::{Spectrum, SpectrumBand, SpectrumLine};
+pub use spectrum::{Spectrum, SpectrumLine};
 pub use terms::{Coefficient, NoiseTerm, NoiseTerms};
 pub use variance::RawVariance;

@@ -65,7 +65,7 @@ fn spectra(analysis: &NoiseAnalysis) -> Plot {
         let Ok(spectrum) = &reading.noise.spectrum else { continue };
         let factor = Shown::reading(reading).factor;
         let points =
-            spectrum.bands(BANDS_PER_OCTAVE).into_iter().map(|b| Point::new(b.frequency, factor * b.density.sqrt()));
+            spectrum.bands(BANDS_PER_OCTAVE).into_iter().map(|(f, density)| Point::new(f, factor * density.sqrt()));
         plot = plot.with(Series::line(reading.name.clone(), points.collect()));
     }
     plot

@@ -90,9 +90,9 @@ fn spectrum(screen: &mut Screen, reading: &ReadingNoise) {
     screen.say(2, &text);
     let density = format!("{unit}/sqrt(Hz)");
     let mut table = Table::new(1, &[(Align::Left, &["Hz", &density])]);
-    for band in spectrum.bands(1.0) {
-        let density = factor * band.density.sqrt();
-        table.row([band.frequency, density].map(|number| significant(number, 4).into()));
+    for (frequency, density) in spectrum.bands(1.0) {
+        let density = factor * density.sqrt();
+        table.row([frequency, density].map(|number| significant(number, 4).into()));
     }
     screen.table(table);
     for line in spectrum.lines() {

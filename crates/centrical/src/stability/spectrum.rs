@@ -24,15 +24,6 @@ pub struct Spectrum {
     pub resolution: f64,
 }
 
-/// Mean density of a band of frequencies.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct SpectrumBand {
-    /// Middle of the band, mean of its frequencies, Hz.
-    pub frequency: f64,
-    /// Mean density, square of the readings' unit per Hz.
-    pub density: f64,
-}
-
 /// A line that stands out of the noise.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SpectrumLine {
@@ -45,17 +36,16 @@ pub struct SpectrumLine {
 }
 
 impl Spectrum {
-    /// Mean densities of bands of equal logarithmic width, `per_octave` of them an octave. They omit the ends of the spectrum:
+    /// The mean frequency [Hz] and the mean density, square of the readings' unit per Hz, of bands of equal logarithmic width, `per_octave` of them an
+    /// octave. They omit the ends of the spectrum:
     /// the mean at frequency 0 is removed, and half the sampling rate has one side only.
-    pub fn bands(&self, per_octave: f64) -> Vec<SpectrumBand> {
+    pub fn bands(&self, per_octave: f64) -> Vec<(f64, f64)> {
         let inner = 1..self.density.len().saturating_sub(1).max(1);
         let band = |k: &usize| (self.frequency[*k].log2() * per_octave).floor();
         let places: Vec<usize> = inner.collect();
         let mean = |of: &[f64], part: &[usize]| part.iter().map(|k| of[*k]).sum::<f64>() / part.len() as f64;
         let bands = places.chunk_by(|a, b| band(a) == band(b));
-        bands
-            .map(|part| SpectrumBand { frequency: mean(&self.frequency, part), density: mean(&self.density, part) })
-            .collect()
+        bands.map(|part| (mean(&self.frequency, part), mean(&self.density, part))).collect()
     }
 
     /// Lines: peaks above the level that the noise about them exceeds in one of a thousand spectra.
