@@ -10,9 +10,7 @@
 //!
 //! Times are in years, values in any unit.
 
-mod batches;
 mod between;
-mod capability;
 mod chart;
 mod evolution;
 mod law;
@@ -26,9 +24,7 @@ mod succession;
 mod together;
 mod units;
 
-pub use batches::BatchTest;
 pub use between::{Between, Likely};
-pub use capability::{Capability, Index};
 pub use chart::{Control, Cusum, Ewma, Rule};
 pub use evolution::{DAYS_IN_YEAR, Estimated, Evolution};
 pub use law::NormalMixture;
@@ -38,4 +34,4 @@ pub use quantiles::Quantiles;
 pub use series::{Point, Series};
 pub use station::{Reading, StationTest};
 pub use together::{FarthestSession, Sameness, SessionEstimates};
-pub use units::UnitTrend;
+pub use units::{BatchTest, Capability, Index, UnitTrend};

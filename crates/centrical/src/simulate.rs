@@ -15,7 +15,6 @@ mod draw;
 mod equipment;
 mod markov;
 mod motion;
-mod pulses;
 mod record;
 mod response;
 mod sensor_noise;
@@ -234,7 +233,7 @@ impl SimulatedMounting<'_> {
         let Equipment { tachometer, counter, .. } = self.simulation.equipment;
         let mut clock = Draw::Clock.stream(self.simulation.seed, self.mounting);
         let offset = tachometer.clock_offset * (2.0 * clock.uniform() - 1.0);
-        pulses::times(&self.motion, counter, offset, self.simulation.seed, self.mounting)
+        telemetry::pulses(&self.motion, counter, offset, self.simulation.seed, self.mounting)
     }
 }
 

@@ -1,8 +1,10 @@
-//! Units of one type over time, with few sessions each: which of them drift, or scatter more than the others.
+//! Units of one type beside each other: which of them drift, or scatter more than the others, with few sessions each; how they lie between limits;
+//! whether their batches differ.
 
 use super::line::{Curve, Line};
 use super::series::Series;
-use crate::statistics::{f_tail, t_tail};
+use crate::statistics::{chi_squared_quantiles, f_tail, t_tail};
+use crate::uncertainty::Degrees;
 
 /// One unit beside the others of its type.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -17,6 +19,39 @@ pub struct UnitTrend {
     pub variance_ratio: f64,
     /// Probability of so large a ratio of a unit that scatters as the others do.
     pub scatter_probability: f64,
+}
+
+/// How a parameter of many units lies between its limits (ISO 22514-2).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Capability {
+    /// Mean over the units.
+    pub mean: f64,
+    /// Standard deviation over the units.
+    pub deviation: f64,
+    /// `Cp = (upper - lower) / (6 s)`; `None` with one limit only.
+    pub cp: Option<Index>,
+    /// `Cpk`: distance of the mean from the nearer limit over `3 s`.
+    pub cpk: Index,
+}
+
+/// An index and its interval.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Index {
+    /// Estimate.
+    pub value: f64,
+    /// Its interval: for Cp exact for normal values, by chi^2; for Cpk of A. F. Bissell (Applied Statistics 39, 1990).
+    pub interval: [f64; 2],
+}
+
+/// Welch's test of equal means of batches, whatever their scatters (B. L. Welch, Biometrika 38, 1951).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BatchTest {
+    /// Welch's F.
+    pub variance_ratio: f64,
+    /// Its degrees of freedom.
+    pub degrees_of_freedom: [f64; 2],
+    /// Probability of so large an F if the means are equal.
+    pub probability: f64,
 }
 
 impl UnitTrend {
@@ -58,5 +93,52 @@ impl UnitTrend {
             })
         };
         lines.iter().map(|line| line.as_ref().and_then(trend)).collect()
+    }
+}
+
+impl Capability {
+    /// Capability of `values` between `lower` and `upper`, each optional, with intervals of probability `coverage`.
+    /// `None` below two values, without a limit, or without scatter.
+    pub fn of(values: &[f64], lower: Option<f64>, upper: Option<f64>, coverage: f64) -> Option<Capability> {
+        let n = values.len();
+        let nu = n.checked_sub(1).filter(|nu| *nu > 0)? as f64;
+        let mean = values.iter().sum::<f64>() / n as f64;
+        let deviation = (values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / nu).sqrt();
+        let below = lower.map(|lower| (mean - lower) / (3.0 * deviation));
+        let above = upper.map(|upper| (upper - mean) / (3.0 * deviation));
+        let nearer = [below, above].into_iter().flatten().min_by(f64::total_cmp).filter(|index| index.is_finite())?;
+        let quantiles = chi_squared_quantiles(nu, coverage)?;
+        let cp = lower.zip(upper).map(|(lower, upper)| {
+            let value = (upper - lower) / (6.0 * deviation);
+            Index { value, interval: quantiles.map(|quantile| value * (quantile / nu).sqrt()) }
+        });
+        let doubt = (1.0 / (9.0 * n as f64) + nearer * nearer / (2.0 * nu)).sqrt();
+        let half = Degrees::Infinite.coverage_factor(coverage) * doubt;
+        Some(Capability { mean, deviation, cp, cpk: Index { value: nearer, interval: [nearer - half, nearer + half] } })
+    }
+}
+
+impl BatchTest {
+    /// The test of values in batches. Batches of one value or without scatter are left out; `None` unless two are left.
+    pub fn of(batches: &[Vec<f64>]) -> Option<BatchTest> {
+        let described = batches.iter().filter_map(|values| {
+            let n = values.len() as f64;
+            let mean = values.iter().sum::<f64>() / n;
+            let variance = values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / (n - 1.0);
+            (values.len() > 1 && variance > 0.0 && variance.is_finite()).then(|| (n, mean, n / variance))
+        });
+        let batches: Vec<(f64, f64, f64)> = described.collect();
+        let k = batches.len() as f64;
+        if k < 2.0 {
+            return None;
+        }
+        let total: f64 = batches.iter().map(|(_, _, w)| w).sum();
+        let grand = batches.iter().map(|(_, mean, w)| w * mean).sum::<f64>() / total;
+        let between = batches.iter().map(|(_, mean, w)| w * (mean - grand).powi(2)).sum::<f64>() / (k - 1.0);
+        let doubt: f64 = batches.iter().map(|(n, _, w)| (1.0 - w / total).powi(2) / (n - 1.0)).sum();
+        let variance_ratio = between / (1.0 + 2.0 * (k - 2.0) / (k * k - 1.0) * doubt);
+        let degrees_of_freedom = [k - 1.0, (k * k - 1.0) / (3.0 * doubt)];
+        let probability = f_tail(variance_ratio, degrees_of_freedom[0], degrees_of_freedom[1]);
+        Some(BatchTest { variance_ratio, degrees_of_freedom, probability })
     }
 }

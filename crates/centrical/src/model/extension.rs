@@ -9,8 +9,7 @@ use super::effect::{Course, Effect, Law, Scope};
 use super::error_model::{ErrorModel, Term};
 use super::experiment::{Experiment, PairRelation, STANDARD_GRAVITY, Site};
 use super::group::Group;
-use super::kind::Kind;
-use super::parameter::{Parameter, coefficient, parameter};
+use super::parameter::{Kind, Parameter, coefficient, parameter};
 
 /// Unknowns beyond the source's 49, each off by default.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

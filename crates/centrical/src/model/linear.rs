@@ -7,9 +7,9 @@
 use nalgebra::Vector3;
 
 use super::experiment::SetPoint;
-use super::kind::Kind;
 use super::measurement::MeasurementModel;
 use super::nominal::Nominal;
+use super::parameter::Kind;
 use super::plateau::Linearisation;
 use super::share::Share;
 

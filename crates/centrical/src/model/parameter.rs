@@ -6,7 +6,6 @@ use super::effect::{Effect, Scope};
 use super::error_model::Term;
 use super::experiment::STANDARD_GRAVITY;
 use super::group::Group;
-use super::kind::Kind;
 
 /// One unknown.
 #[derive(Debug, Clone, PartialEq)]
@@ -26,6 +25,43 @@ pub struct Parameter {
     pub typical: f64,
 }
 
+/// What a parameter is in the measurement model. Axes are 0, 1, 2.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Kind {
+    /// `alpha_1`, `alpha_2`: tilt of the rotation axis [rad].
+    Tilt(usize),
+    /// `delta_ik`: turn of the unit in position `k` about instrument axis `i` [rad].
+    Turn {
+        /// Instrument axis.
+        axis: usize,
+        /// Index of the position.
+        position: usize,
+    },
+    /// `dR_ik`: error of the place of the reference point along arm axis `i` [m].
+    Shift {
+        /// Arm axis, 0 or 1.
+        axis: usize,
+        /// Index of the position, the first of its pair, whose `dR` this is.
+        position: usize,
+    },
+    /// `theta_1`, `theta_2` of a rest in a free attitude: tilt of the vertical, seen from the nominal attitude [rad].
+    Attitude {
+        /// Reference axis, 0 or 1.
+        axis: usize,
+        /// Index of the position.
+        position: usize,
+    },
+    /// `case_turn_i`: turn of the instrument against its case about instrument axis `i` [rad]: what rests in known attitudes share.
+    CaseTurn(usize),
+    /// `drho_ii`: error of the place of proof mass `i` along its own axis [m].
+    ProofMass(usize),
+    /// Coefficient of a term of the error model, by its index.
+    Term(usize),
+    /// What acts on the readings beyond the source's unknowns.
+    Effect(Effect),
+}
+
 impl Parameter {
     /// Standard deviation with which null directions are held about zero, in typical magnitudes of the parameters
     /// (5 mm, 10 mrad, 1e-2 of scale): ten times what any real unit shows, so that it holds and does not inform.
@@ -40,6 +76,17 @@ impl Parameter {
     /// Whether it belongs to the instrument: a coefficient of its error model, as opposed to the geometry.
     pub fn is_of_instrument(&self) -> bool {
         matches!(self.kind, Kind::Term(_))
+    }
+}
+
+impl Kind {
+    /// Whether it belongs to a position or to a pair of positions.
+    pub(crate) fn is_of_position(self) -> bool {
+        match self {
+            Self::Turn { .. } | Self::Shift { .. } | Self::Attitude { .. } => true,
+            Self::Effect(effect) => matches!(effect.scope(), Scope::Position(_)),
+            Self::Tilt(_) | Self::CaseTurn(_) | Self::ProofMass(_) | Self::Term(_) => false,
+        }
     }
 }
 

@@ -7,8 +7,7 @@ use super::error_model::ErrorModel;
 use super::experiment::{Experiment, PairRelation, ReferencePoint};
 use super::extension::Extension;
 use super::group::Group;
-use super::kind::Kind;
-use super::parameter::{Parameter, coefficient, parameter};
+use super::parameter::{Kind, Parameter, coefficient, parameter};
 
 /// The unknowns of an experiment in the order of `X` [K5.4]: `alpha`, `delta` by position, `dR` by pair (by
 /// position when free), `drho`, `theta` by rest in a free attitude, `case_turn` where such attitudes are known, the coefficients of the error model, then the extensions

@@ -8,7 +8,7 @@ use nalgebra::{DMatrix, DVector};
 use thiserror::Error;
 
 use super::experiment::Experiment;
-use super::kind::Kind;
+use super::parameter::Kind;
 use super::parameters::Parameters;
 
 /// Prior knowledge of one parameter: a mean with a standard uncertainty.

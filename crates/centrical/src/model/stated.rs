@@ -7,7 +7,7 @@
 use super::effect::Effect;
 use super::error_model::ErrorModel;
 use super::experiment::{Experiment, SetPoint};
-use super::kind::Kind;
+use super::parameter::Kind;
 use super::position::SwitchOn;
 use super::rival::Rival;
 use crate::statistics::bias_variance;

@@ -1,4 +1,4 @@
-//! Laws of what chance makes.
+//! Laws of what chance makes, and of many tests at once.
 
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 use statrs::function::beta::beta_reg;
@@ -38,6 +38,35 @@ pub fn t_tail(t: f64, nu: f64) -> f64 {
     /// Degrees beyond which the law is normal to five digits, and the continued fraction of the beta function loses all of its own.
     const MANY: f64 = 1e8;
     if nu > MANY { chi_squared_tail(t * t, 1) } else { f_tail(t * t, 1.0, nu) }
+}
+
+/// Holm's step-down family-wise probabilities of tests whose `probabilities` rise.
+pub(crate) fn holm(probabilities: impl ExactSizeIterator<Item = f64>) -> Vec<f64> {
+    let count = probabilities.len();
+    let mut highest: f64 = 0.0;
+    let family_wise = probabilities.enumerate().map(|(n, probability)| {
+        highest = highest.max((count - n) as f64 * probability).min(1.0);
+        highest
+    });
+    family_wise.collect()
+}
+
+/// The family-wise probabilities of tests in any order (S. Holm, Scandinavian Journal of Statistics 6, 1979), whatever their
+/// dependence: what is below a level is wrongly so for any test of a true hypothesis with at most that probability.
+pub fn family_wise(probabilities: &[f64]) -> Vec<f64> {
+    let mut order: Vec<usize> = (0..probabilities.len()).collect();
+    order.sort_by(|&a, &b| probabilities[a].total_cmp(&probabilities[b]));
+    let mut family_wise = vec![1.0; probabilities.len()];
+    for (&test, probability) in order.iter().zip(holm(order.iter().map(|&test| probabilities[test]))) {
+        family_wise[test] = probability;
+    }
+    family_wise
+}
+
+/// The family-wise probability of one of `count` independent tests (Z. Sidak, Journal of the American Statistical Association 62, 1967).
+pub(crate) fn sidak(probability: f64, count: f64) -> f64 {
+    // Without the cancellation of 1 - (1 - p)^n.
+    -(count * (-probability).ln_1p()).exp_m1()
 }
 
 #[cfg(test)]
