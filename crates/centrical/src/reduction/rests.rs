@@ -25,9 +25,9 @@ pub struct Rests {
 }
 
 impl Rests {
-    /// The means of the rests of some records, each with the largest distance of the proof masses from the axes of a slow rotation [m], whose arcs
-    /// then count as rests; `None` if they do not. The colour of the noise is pooled over all of them. A rest whose samples are not steady
-    /// is left out. Arcs of slow rotation count if the attitudes of all show an ellipsoid. `progress` is asked again and again.
+    /// The means of the rests of some records. With the largest distance of the proof masses from the axes of a slow rotation [m], arcs of such rotation
+    /// count as rests, if the attitudes of all show an ellipsoid; with `None` they do not. The colour of the noise is pooled over all rests. A rest
+    /// whose samples are not steady is left out. `progress` is asked again and again.
     ///
     /// # Errors
     /// [`ReductionError`] if a record is invalid (lengths, times), too short, or stuck or saturated in a rest, or when the caller stops.
