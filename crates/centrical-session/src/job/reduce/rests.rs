@@ -13,8 +13,8 @@ use crate::experiment::{KnownAttitudes, LARGEST_SCALE_ERROR, RecordedRests, Rest
 use crate::record::read_records;
 use crate::reduced::{ReducedPlateau, rest_rows};
 
-/// The rests of all records, each with its turning radius: one search for a tumble and for a session. The colour of the noise is pooled over all of them. Messages
-/// name `file`.
+/// The rests of all records, each with its turning radius: one search for a tumble and for a session. The colour of the noise is pooled over
+/// all of them. Messages name `file`.
 ///
 /// # Errors
 /// If a record is invalid, or there are fewer than two rests: a single one shows nothing. [`Error::Stopped`].
