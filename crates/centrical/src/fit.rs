@@ -12,7 +12,7 @@
 //! lost combinations leave in the estimable parameters is in the covariance of those.
 //!
 //! **Weak directions.** What remains of a short rank may be determined to hundreds of typical magnitudes only, and the model is not linear
-//! so far. Directions beyond [`Parameter::NULL_HOLD`](crate::Parameter::NULL_HOLD) along which it is not are held as well, to find a point where it can be
+//! so far. Directions beyond that hold along which it is not are held as well, to find a point where it can be
 //! linearised. The estimates are one linear step on from there, without that hold: it informs none of them.
 //!
 //! A first reading can leave out `curvature.rs`, which acts with priors and free attitudes alone, and the elimination in

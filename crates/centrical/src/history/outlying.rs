@@ -41,9 +41,9 @@ impl UnitDistance {
     /// Fewer units give no law.
     pub const FEWEST_UNITS: usize = 10;
 
-    /// The distances of units of one type by their `session`s, of which each unit has one or more by `counts`. Session `t` of a unit is given in the
-    /// order of time: `p` values and the covariance of their errors as it states them, made when it is asked for. `None` below [`Self::FEWEST_UNITS`], or where a parameter does not vary. The same `seed` gives the
-    /// same probabilities on any number of threads.
+    /// The distances of units of one type, each of one or more sessions by `counts`. `session` makes session `t` of a unit, in the order of time, when
+    /// it is asked for: `p` values, and the covariance of their errors as it states them. `None` below [`Self::FEWEST_UNITS`], or where a
+    /// parameter does not vary. The same `seed` gives the same probabilities on any number of threads.
     pub fn of_all(
         counts: &[usize],
         session: &(dyn Fn(usize, usize) -> SessionEstimates + Sync),
