@@ -6,7 +6,6 @@
 //!
 //! A text is read in pieces of whole lines, several at a time on all threads.
 
-mod batch;
 mod encoding;
 mod fields;
 mod form;
@@ -15,7 +14,6 @@ mod lines;
 mod number;
 mod piece;
 mod prologue;
-mod separators;
 mod shape;
 mod unit_words;
 

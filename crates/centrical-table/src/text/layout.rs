@@ -4,10 +4,9 @@ use std::borrow::Cow;
 
 use memchr::{memchr2, memchr3};
 
-use super::batch::{Batch, ROWS};
 use super::fields::{Delimiter, Fault, number, unquoted};
 use super::lines::{is_data, numbered};
-use super::number::plain;
+use super::number::{Batch, ROWS, plain};
 use super::shape::{are_units, is_number};
 use super::unit_words::unit_in_any;
 use crate::column::{ColumnName, Field, LARGEST_NUMBER, Rows, Rule, is_missing};
