@@ -3,26 +3,31 @@
 mod in_memory;
 mod mounting;
 mod own_readings;
-mod pooling;
 mod rests;
 
 use std::borrow::Cow;
 
 use centrical::OnProgress;
+use centrical::reduction::{MeasuredSpeed, NoiseModel, PlateauMean, ReducedMounting};
 use rayon::ThreadPoolBuilder;
 use rayon::prelude::*;
 
-pub use self::in_memory::{Recorded, reduce_recorded};
-use self::mounting::Scheduler;
+pub use self::in_memory::Recorded;
+use self::in_memory::reduce_mountings;
+use self::mounting::{OfRecord, Scheduler};
 pub(crate) use self::mounting::{ShownSpeeds, located};
 use self::own_readings::refuse_shared_readings;
 pub(crate) use self::own_readings::{refuse_copies, refuse_repeated_rests};
-use self::pooling::pooled;
 pub(crate) use self::rests::{find_rests, is_of_gravity, mean_size, with_all_rests};
-use crate::error::Error;
+use crate::error::{Error, Place};
 use crate::experiment::Session;
-use crate::record::Input;
-use crate::reduced::Reduced;
+use crate::record::{Input, RecordOverview};
+use crate::reduced::{MountingFindings, Reduced, ReducedPlateau};
+use crate::units::rpm;
+
+/// A measured speed farther than this from the one that was set, relative, is in another unit. The record bears out the
+/// schedule better than that, or its plateaus would not be found.
+const OTHER_UNIT: f64 = 0.1;
 
 /// Reads and reduces the records of a session, or takes its plateau table. The session that comes back has the rests that were
 /// found in its records, and is the one to which the means belong. `progress` is called with the number of bytes read, from any
@@ -54,14 +59,27 @@ pub fn reduce_without_inputs<'s>(
     let reduced = match &session.plateaus {
         Some(table) => Reduced::of_table(&table.rows),
         None if session.mountings.is_empty() => Reduced::of_table(&[]),
-        None => from_records(session, progress)?,
+        None => pooled(session, with_thread_limit(|| Scheduler::new(session, progress).run())?)?,
     };
     let (session, rests) = with_all_rests(session, progress)?;
     Ok((session, reduced.with_rests(rests)))
 }
 
-fn from_records(session: &Session, progress: OnProgress) -> Result<Reduced, Error> {
-    pooled(session, with_thread_limit(|| Scheduler::new(session, progress).run())?)
+/// Reduces the mountings of a session from memory, one of `recorded` for each; the numbers are those of [`reduce`] on files with
+/// the same values. The session that comes back has the rests that were found in its records, which are files. `progress` is
+/// called with the number of mountings reduced.
+///
+/// # Errors
+/// [`Error`] naming the mounting, what was found and what was expected; [`Error::Stopped`].
+pub fn reduce_recorded<'s>(
+    session: &'s Session,
+    recorded: Vec<Recorded>,
+    progress: OnProgress<usize>,
+) -> Result<(Cow<'s, Session>, Reduced), Error> {
+    session.refuse_planned_rests()?;
+    let reduced = pooled(session, reduce_mountings(session, recorded, progress)?)?;
+    let (session, rests) = with_all_rests(session, &|_| progress(0))?;
+    Ok((session, reduced.with_rests(rests)))
 }
 
 /// Does some work on a limited number of threads: each holds some MB that it has worked with, and a batch of pieces does not
@@ -74,4 +92,56 @@ fn with_thread_limit<T: Send>(work: impl FnOnce() -> T + Send) -> T {
         // If no pool can be made, this thread remains.
         _ => work(),
     }
+}
+
+/// From the mountings to the noise of all of them together, then to the covariances.
+fn pooled(session: &Session, mountings: Vec<OfRecord>) -> Result<Reduced, Error> {
+    let interpolated: Vec<Option<[u64; 3]>> = mountings.iter().map(|mounting| mounting.interpolated).collect();
+    let (reduced, records): (Vec<ReducedMounting>, Vec<RecordOverview>) =
+        mountings.into_iter().map(|mounting| (mounting.reduced, mounting.overview)).unzip();
+    let noise = NoiseModel::pool(&reduced);
+    let means: Vec<Vec<PlateauMean>> = reduced.iter().map(|mounting| mounting.means(&noise)).collect();
+    refuse_copies(session, means.len(), &|| Cow::Borrowed(&means))?;
+    let findings = |(m, interpolated): (&ReducedMounting, &Option<[u64; 3]>)| MountingFindings {
+        settling_time: m.settling_time(),
+        clock_offset: m.clock_offset(),
+        agreement: m.clock_agreement(),
+        interpolated: *interpolated,
+        unscheduled: m.unscheduled().to_vec(),
+    };
+    let experiment = &session.experiment;
+    let on_arm = experiment.set_points.iter().filter(|set_point| experiment.is_on_arm(set_point.mounting));
+    let set: Vec<f64> = on_arm.map(|set_point| set_point.omega).collect();
+    let speeds = MeasuredSpeed::of_all(&set, &reduced);
+    refuse_other_units(session, &speeds)?;
+    Ok(Reduced {
+        speeds,
+        plateaus: means.into_iter().flatten().map(ReducedPlateau::from).collect(),
+        mountings: reduced.iter().zip(&interpolated).map(findings).collect(),
+        records,
+        held_out: Vec::new(),
+        inputs: Vec::new(),
+    })
+}
+
+/// Refuses measured speeds that cannot be those of the plateaus: a wrong unit, or a wrong number of pulses.
+fn refuse_other_units(session: &Session, speeds: &[Option<MeasuredSpeed>]) -> Result<(), Error> {
+    if !session.speeds.is_in_files() {
+        return Ok(());
+    }
+    let pairs =
+        session.experiment.set_points.iter().zip(speeds).filter_map(|(set, speed)| Some((set, speed.as_ref()?)));
+    let Some((set, speed)) =
+        pairs.into_iter().find(|(set, speed)| (speed.speed / set.omega.abs() - 1.0).abs() > OTHER_UNIT)
+    else {
+        return Ok(());
+    };
+    let of_mounting = session.mountings.get(set.mounting);
+    let file = of_mounting.and_then(|m| m.pulses.as_deref().or(m.telemetry.as_deref())).unwrap_or(&session.file);
+    let found = format!("{:.2} rpm", rpm(speed.speed));
+    let expected = format!(
+        "about {:.2} rpm, the speed that is set (speed_unit in [columns], pulses_per_revolution in [centrifuge])",
+        rpm(set.omega.abs())
+    );
+    Err(Error::content(file, Place::Whole, found, expected))
 }

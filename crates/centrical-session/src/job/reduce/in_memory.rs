@@ -1,18 +1,13 @@
 //! Records that are in memory: the same reduction, without files.
 
-use std::borrow::Cow;
-
 use centrical::reduction::{PulseTrain, Record, ReducedMounting, SpeedTrace, Survey};
 use centrical::{OnProgress, advance};
 use rayon::prelude::*;
 
 use super::mounting::{OfRecord, ShownSpeeds, located};
-use super::pooling::pooled;
-use super::rests::with_all_rests;
 use crate::error::{Error, Place};
 use crate::experiment::Session;
 use crate::record::RecordOverview;
-use crate::reduced::Reduced;
 
 /// What was recorded of one mounting, in the units of the session's columns.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -25,18 +20,15 @@ pub struct Recorded {
     pub pulses: Option<Vec<f64>>,
 }
 
-/// Reduces the mountings of a session from memory, one of `recorded` for each; the numbers are those of
-/// [`reduce`](super::reduce) on files with the same values. The session that comes back has the rests that were found in its
-/// records, which are files. `progress` is called with the number of mountings reduced.
+/// Reduces the mountings of a session, one of `recorded` for each. `progress` is called with the number of mountings reduced.
 ///
 /// # Errors
 /// [`Error`] naming the mounting, what was found and what was expected; [`Error::Stopped`].
-pub fn reduce_recorded<'s>(
-    session: &'s Session,
+pub(super) fn reduce_mountings(
+    session: &Session,
     recorded: Vec<Recorded>,
     progress: OnProgress<usize>,
-) -> Result<(Cow<'s, Session>, Reduced), Error> {
-    session.refuse_planned_rests()?;
+) -> Result<Vec<OfRecord>, Error> {
     let (found, expected) = (recorded.len(), session.mountings.len());
     if found != expected {
         let expected = format!("{expected}, one for each mounting");
@@ -50,9 +42,7 @@ pub fn reduce_recorded<'s>(
     });
     // Which error is the first does not depend on the threads.
     let mountings: Vec<Result<OfRecord, Error>> = mountings.collect();
-    let reduced = pooled(session, mountings.into_iter().collect::<Result<_, _>>()?)?;
-    let (session, rests) = with_all_rests(session, &|_| progress(0))?;
-    Ok((session, reduced.with_rests(rests)))
+    mountings.into_iter().collect()
 }
 
 fn reduce_mounting(
