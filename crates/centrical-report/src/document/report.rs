@@ -1,20 +1,25 @@
 //! The report of a calibration: verdict, session, parameters, budget, figures.
 
-use centrical_session::{CalibrationResult, ParameterEstimate, Redundancy, UnitHistoryReport, ValiditySummary};
+use centrical_session::{
+    CalibrationResult, ParameterEstimate, Redundancy, UnitHistoryReport, ValiditySummary, customary,
+};
 
 use super::axes::axes;
 use super::conformity::{judged_in_words, rule};
-use super::content::{Align, Block, Document, Fact, Margins, Opening, Section, Table, TableKind, Tone};
+use super::content::{Align, Block, Column, Document, Fact, Margins, Opening, Row, Section, Table, TableKind, Tone};
 use super::drift::drift;
 use super::objection::{pattern, refusal, rival};
 use super::reading_error::{error_note, error_table, headline_table};
 use super::rests_on::{all_rests_on, rests_on};
 use super::switch_on::switch_on;
-use super::tables::{budget, by_group, coefficients, nominal_output, of_arm, parameters, serial};
-use crate::evaluation::{UnitStatement, UnitVerdict, equations, symbol};
+use super::tables::{by_group, coefficients, nominal_output, of_arm, parameters, serial};
+use crate::evaluation::{BudgetOf, UnitStatement, UnitVerdict, equations, symbol};
 use crate::figure::{Figure, positions};
 use crate::language::Language;
 use crate::number::grouped;
+
+/// What a source leaves is not shown below this part of the combined uncertainty.
+const NEGLIGIBLE: f64 = 1e-3;
 
 /// The report of a result: what every reader sees, then what some will open. `unit` is what a decision says of the unit, `past`
 /// what its earlier calibrations say, and `figures` are those of the result ([`crate::figures`]) and what is to stand after them.
@@ -304,6 +309,42 @@ fn uncertainty_budget(result: &CalibrationResult, language: Language) -> Vec<Blo
     }
     blocks.push(Block::Table(table));
     blocks
+}
+
+/// Standard uncertainty by source; `None` if no budget was made.
+fn budget(result: &CalibrationResult, language: Language) -> Option<Table> {
+    let messages = language.messages();
+    let budget = result.budget.as_ref()?;
+    let mut titles = vec![messages.parameter, messages.unit];
+    titles.extend(budget.sources.iter().map(|source| (messages.words.source)(source.name)));
+    titles.extend([messages.combined, messages.degrees_word]);
+    let share = 1.0 / titles.len() as f32;
+    let column = |(n, title): (usize, &str)| {
+        let align = if n < 2 { Align::Left } else { Align::Right };
+        Column { title: title.to_owned(), share, align }
+    };
+    let columns = titles.into_iter().enumerate().map(column).collect();
+    let row = |parameter: &ParameterEstimate| {
+        let (factor, unit) = customary(&parameter.unit, parameter.group);
+        let shown = |value: Option<f64>| value.map_or(String::new(), |value| language.significant(value * factor, 2));
+        let budget = BudgetOf::parameter(result, &parameter.name)?;
+        let combined = budget.combined();
+        let negligible = NEGLIGIBLE * combined.unwrap_or(0.0);
+        let of_source = |value: Option<f64>| {
+            if value.is_some_and(|value| value < negligible) { "–".to_owned() } else { shown(value) }
+        };
+        let mut cells = vec![symbol(&parameter.name), language.unit(unit)];
+        cells.extend(budget.sources().map(of_source));
+        if combined.is_some() {
+            let degrees = budget.degrees_of_freedom().map_or("∞".to_owned(), |nu| language.fixed(nu.floor(), 0));
+            cells.extend([shown(combined), degrees]);
+        } else {
+            cells.extend([messages.not_determined.to_owned(), String::new()]);
+        }
+        Some(Row::Cells(cells))
+    };
+    let rows = result.parameters.iter().filter_map(row).collect();
+    Some(Table { kind: TableKind::Numbers, columns, rows })
 }
 
 fn mounting_positions(result: &CalibrationResult, language: Language) -> Vec<Block> {

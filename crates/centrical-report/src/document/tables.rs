@@ -2,12 +2,9 @@
 
 use centrical_session::{CalibrationResult, ModelSummary, OutputSummary, ParameterEstimate, SessionSummary, customary};
 
-use super::content::{Align, Block, Column, Row, Table, TableKind};
-use crate::evaluation::{BudgetOf, Expanded, expanded, symbol};
+use super::content::{Align, Block, Row, Table, TableKind};
+use crate::evaluation::{Expanded, expanded, symbol};
 use crate::language::Language;
-
-/// What a source leaves is not shown below this part of the combined uncertainty.
-const NEGLIGIBLE: f64 = 1e-3;
 
 /// The serial number of a unit, or that the session gives none.
 pub(crate) fn serial(session: &SessionSummary, language: Language) -> &str {
@@ -80,42 +77,6 @@ fn cells(result: &CalibrationResult, parameter: &ParameterEstimate, language: La
         _ => [language.messages().not_determined.to_owned(), String::new(), String::new()],
     };
     vec![symbol(&parameter.name), shown, language.unit(unit), k, si, language.unit(&parameter.unit)]
-}
-
-/// Standard uncertainty by source; `None` if no budget was made.
-pub(super) fn budget(result: &CalibrationResult, language: Language) -> Option<Table> {
-    let messages = language.messages();
-    let budget = result.budget.as_ref()?;
-    let mut titles = vec![messages.parameter, messages.unit];
-    titles.extend(budget.sources.iter().map(|source| (messages.words.source)(source.name)));
-    titles.extend([messages.combined, messages.degrees_word]);
-    let share = 1.0 / titles.len() as f32;
-    let column = |(n, title): (usize, &str)| {
-        let align = if n < 2 { Align::Left } else { Align::Right };
-        Column { title: title.to_owned(), share, align }
-    };
-    let columns = titles.into_iter().enumerate().map(column).collect();
-    let row = |parameter: &ParameterEstimate| {
-        let (factor, unit) = customary(&parameter.unit, parameter.group);
-        let shown = |value: Option<f64>| value.map_or(String::new(), |value| language.significant(value * factor, 2));
-        let budget = BudgetOf::parameter(result, &parameter.name)?;
-        let combined = budget.combined();
-        let negligible = NEGLIGIBLE * combined.unwrap_or(0.0);
-        let of_source = |value: Option<f64>| {
-            if value.is_some_and(|value| value < negligible) { "–".to_owned() } else { shown(value) }
-        };
-        let mut cells = vec![symbol(&parameter.name), language.unit(unit)];
-        cells.extend(budget.sources().map(of_source));
-        if combined.is_some() {
-            let degrees = budget.degrees_of_freedom().map_or("∞".to_owned(), |nu| language.fixed(nu.floor(), 0));
-            cells.extend([shown(combined), degrees]);
-        } else {
-            cells.extend([messages.not_determined.to_owned(), String::new()]);
-        }
-        Some(Row::Cells(cells))
-    };
-    let rows = result.parameters.iter().filter_map(row).collect();
-    Some(Table { kind: TableKind::Numbers, columns, rows })
 }
 
 /// The nominal scale and bias of a unit that does not put out an acceleration.
