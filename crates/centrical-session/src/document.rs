@@ -24,7 +24,6 @@ mod simulation;
 mod steadiness;
 mod truth;
 mod watch;
-mod words;
 
 pub use self::added::*;
 pub use self::assessment::*;

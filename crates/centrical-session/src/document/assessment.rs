@@ -53,7 +53,7 @@ pub struct AssessmentReport {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct AssessedFit {
     /// How it ended.
-    #[serde(serialize_with = "crate::document::words::serialize")]
+    #[serde(serialize_with = "crate::document::json::serialize")]
     pub termination: Termination,
     /// Weighted sum of squared residuals.
     pub chi_squared: f64,
@@ -89,7 +89,7 @@ pub struct AssessedParameter {
     /// Unit.
     pub unit: String,
     /// bias, scale, misalignment, ...
-    #[serde(serialize_with = "crate::document::words::serialize")]
+    #[serde(serialize_with = "crate::document::json::serialize")]
     pub group: Group,
     /// Estimate; null where it is not determined, as all that follows.
     pub value: Option<f64>,
@@ -107,7 +107,7 @@ pub struct AssessedParameter {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ImprovementSummary {
     /// The source.
-    #[serde(serialize_with = "crate::document::words::serialize")]
+    #[serde(serialize_with = "crate::document::json::serialize")]
     pub source: Source,
     /// Its mean share of the variance of the parameters of the instrument, 0 to 1.
     pub share: f64,

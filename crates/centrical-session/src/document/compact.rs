@@ -3,8 +3,8 @@
 use centrical::{Group, Source};
 
 use super::documents::ObjectionName;
+use super::json::Word;
 use super::result::{CalibrationResult, ParameterEstimate, PriorSummary};
-use super::words::Word;
 use crate::store::{Row, RowPrior, SharedInfluence, Status, days_since_1970, sha256, whole};
 
 impl CalibrationResult {

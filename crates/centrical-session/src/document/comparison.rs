@@ -83,7 +83,7 @@ pub struct DifferenceSummary {
     /// Unit.
     pub unit: String,
     /// bias, scale, misalignment, ...
-    #[serde(serialize_with = "crate::document::words::serialize")]
+    #[serde(serialize_with = "crate::document::json::serialize")]
     pub group: Group,
     /// Value in the first result, relative to the raw output of the second.
     pub first: Option<f64>,

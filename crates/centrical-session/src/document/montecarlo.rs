@@ -65,7 +65,7 @@ pub struct RepeatedParameter {
     /// Unit.
     pub unit: String,
     /// bias, scale, misalignment, ...
-    #[serde(serialize_with = "crate::document::words::serialize")]
+    #[serde(serialize_with = "crate::document::json::serialize")]
     pub group: Group,
     /// The true value that was drawn for.
     pub truth: f64,

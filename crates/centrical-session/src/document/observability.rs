@@ -124,7 +124,7 @@ pub struct ObservedParameter {
     /// Unit.
     pub unit: String,
     /// bias, scale, misalignment, ...
-    #[serde(serialize_with = "crate::document::words::serialize")]
+    #[serde(serialize_with = "crate::document::json::serialize")]
     pub group: Group,
     /// Whether it belongs to the instrument's error model.
     pub of_instrument: bool,

@@ -143,7 +143,7 @@ pub struct GoalReport {
     /// SI unit.
     pub unit: String,
     /// Group of the parameter.
-    #[serde(serialize_with = "crate::document::words::serialize")]
+    #[serde(serialize_with = "crate::document::json::serialize")]
     pub group: Group,
     /// Wanted standard uncertainty.
     pub wanted: f64,

@@ -38,7 +38,7 @@ pub struct PredictedParameter {
     /// Unit.
     pub unit: String,
     /// bias, scale, misalignment, ...
-    #[serde(serialize_with = "crate::document::words::serialize")]
+    #[serde(serialize_with = "crate::document::json::serialize")]
     pub group: Group,
     /// Standard uncertainty by noise, speeds and priors.
     pub type_a: Option<f64>,

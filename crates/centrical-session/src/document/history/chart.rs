@@ -23,7 +23,7 @@ pub struct ChartReport {
     /// Unit of SI.
     pub unit: String,
     /// bias, scale, tilt, ...
-    #[serde(serialize_with = "crate::document::words::serialize")]
+    #[serde(serialize_with = "crate::document::json::serialize")]
     pub group: Group,
     /// Sessions whose values gave the limits; 0 where they were stated.
     pub accepted: usize,

@@ -43,7 +43,7 @@ pub struct StationParameter {
     /// Unit.
     pub unit: String,
     /// tilt, turn, shift, ...
-    #[serde(serialize_with = "crate::document::words::serialize")]
+    #[serde(serialize_with = "crate::document::json::serialize")]
     pub group: Group,
     /// Sessions that determine it.
     pub sessions: usize,

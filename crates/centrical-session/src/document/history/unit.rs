@@ -133,7 +133,7 @@ pub struct UnitParameter {
     /// Unit.
     pub unit: String,
     /// bias, scale, misalignment, ...
-    #[serde(serialize_with = "crate::document::words::serialize")]
+    #[serde(serialize_with = "crate::document::json::serialize")]
     pub group: Group,
     /// Value in each session; null where the session does not determine it.
     pub values: Vec<Option<f64>>,

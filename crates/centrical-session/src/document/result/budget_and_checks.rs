@@ -25,7 +25,7 @@ pub struct BudgetSummary {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct BudgetSource {
     /// Which.
-    #[serde(with = "crate::document::words")]
+    #[serde(with = "crate::document::json")]
     pub name: Source,
     /// Whether the fit weighs it (noise, speed of each plateau, priors); what it does not weigh, the session states.
     #[serde(default)]

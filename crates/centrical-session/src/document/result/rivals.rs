@@ -39,7 +39,7 @@ pub struct RivalSize {
     /// Unit, SI.
     pub unit: String,
     /// The group it belongs to.
-    #[serde(with = "crate::document::words")]
+    #[serde(with = "crate::document::json")]
     pub group: Group,
     /// Size.
     pub value: Option<f64>,
@@ -57,7 +57,7 @@ pub struct RestsOn {
     /// Unit of the unknown, SI.
     pub unit: String,
     /// The group of the unknown.
-    #[serde(with = "crate::document::words")]
+    #[serde(with = "crate::document::json")]
     pub group: Group,
     /// Smallest size that the session shows with a probability of 80 %; null when it shows none.
     pub smallest_shown: Option<f64>,

@@ -139,10 +139,10 @@ pub struct ModelSummary {
     /// The terms of the error model: reading = f + sum of coefficient times monomial.
     pub error_model: Vec<TermSummary>,
     /// "common", "opposite" or "free".
-    #[serde(with = "crate::document::words")]
+    #[serde(with = "crate::document::json")]
     pub pair_relation: PairRelation,
     /// "first-proof-mass" or "own-axes".
-    #[serde(with = "crate::document::words")]
+    #[serde(with = "crate::document::json")]
     pub reference: ReferencePoint,
     /// Local gravity [m/s^2].
     pub gravity: f64,
@@ -192,7 +192,7 @@ pub struct ParameterEstimate {
     /// Unit of both.
     pub unit: String,
     /// bias, scale, misalignment, ...
-    #[serde(with = "crate::document::words")]
+    #[serde(with = "crate::document::json")]
     pub group: Group,
     /// Whether the data determine it.
     pub estimable: bool,
@@ -257,7 +257,7 @@ pub struct FitSummary {
     /// How the unknowns were estimated.
     pub method: Method,
     /// "converged", "stalled", "iteration limit" or "linear".
-    #[serde(with = "crate::document::words")]
+    #[serde(with = "crate::document::json")]
     pub termination: Termination,
     /// Linearisations made.
     pub iterations: usize,

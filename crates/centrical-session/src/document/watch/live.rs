@@ -163,7 +163,7 @@ impl LivePlateau {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct GroupProgress {
     /// Which.
-    #[serde(with = "crate::document::words")]
+    #[serde(with = "crate::document::json")]
     pub group: Group,
     /// Names of its unknowns.
     pub names: Vec<String>,
