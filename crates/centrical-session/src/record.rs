@@ -1,6 +1,5 @@
 //! Records of the unit and telemetry of the centrifuge, in SI.
 
-mod checked_table;
 mod columns;
 mod equal_columns;
 mod input;
@@ -11,10 +10,9 @@ mod reader;
 mod sample_cache;
 mod writer;
 
-pub(crate) use self::checked_table::{
-    CheckedTable, Form as TableForm, NEWTONOMETER_RECORD, PULSES, RECORD, StatedUnits, TELEMETRY,
+pub(crate) use self::columns::{
+    CheckedTable, Form as TableForm, NEWTONOMETER_RECORD, PULSES, RECORD, StatedUnits, TELEMETRY, named_columns,
 };
-pub(crate) use self::columns::named_columns;
 pub use self::columns::{Column, Columns, MissingReadings, Scale};
 pub(crate) use self::equal_columns::EqualColumns;
 pub use self::input::Input;

@@ -6,8 +6,7 @@ use centrical::reduction::{Record, RecordSlice, SpeedTrace};
 use centrical::{OnProgress, advance};
 use centrical_table::{Extent, Index, Reread, Rows, Source, Stamps, TableLines};
 
-use super::checked_table::{CheckedTable, Form, PULSES, RECORD, TELEMETRY};
-use super::columns::{Column, Columns, MissingReadings, Scale};
+use super::columns::{CheckedTable, Column, Columns, Form, MissingReadings, PULSES, RECORD, Scale, TELEMETRY};
 use super::equal_columns::EqualColumns;
 use super::joined::Joined;
 use crate::error::Error;

@@ -5,8 +5,7 @@ use std::path::Path;
 use centrical_table::{Extent, Rows, Source};
 
 use crate::error::Error;
-use crate::record::checked_table::{CheckedTable, Form, NEWTONOMETER_RECORD};
-use crate::record::columns::Columns;
+use crate::record::columns::{CheckedTable, Columns, Form, NEWTONOMETER_RECORD};
 
 /// A table of time and one reading.
 pub(super) struct Part {
