@@ -1,7 +1,7 @@
 //! The report of a calibration: verdict, session, parameters, budget, figures.
 
 use centrical_session::{
-    CalibrationResult, ParameterEstimate, Redundancy, UnitHistoryReport, ValiditySummary, customary,
+    CalibrationResult, ParameterBudget, ParameterEstimate, Redundancy, UnitHistoryReport, ValiditySummary, customary,
 };
 
 use super::axes::axes;
@@ -13,7 +13,7 @@ use super::reading_error::{error_note, error_table, headline_table};
 use super::rests_on::{all_rests_on, rests_on};
 use super::switch_on::switch_on;
 use super::tables::{by_group, coefficients, nominal_output, of_arm, parameters, serial};
-use crate::evaluation::{BudgetOf, UnitStatement, UnitVerdict, equations, symbol};
+use crate::evaluation::{UnitStatement, UnitVerdict, equations, symbol};
 use crate::figure::{Figure, positions};
 use crate::language::Language;
 use crate::number::grouped;
@@ -327,16 +327,15 @@ fn budget(result: &CalibrationResult, language: Language) -> Option<Table> {
     let row = |parameter: &ParameterEstimate| {
         let (factor, unit) = customary(&parameter.unit, parameter.group);
         let shown = |value: Option<f64>| value.map_or(String::new(), |value| language.significant(value * factor, 2));
-        let budget = BudgetOf::parameter(result, &parameter.name)?;
-        let combined = budget.combined();
+        let ParameterBudget { sources, combined, degrees_of_freedom } = result.budget_of(&parameter.name)?;
         let negligible = NEGLIGIBLE * combined.unwrap_or(0.0);
         let of_source = |value: Option<f64>| {
             if value.is_some_and(|value| value < negligible) { "–".to_owned() } else { shown(value) }
         };
         let mut cells = vec![symbol(&parameter.name), language.unit(unit)];
-        cells.extend(budget.sources().map(of_source));
+        cells.extend(sources.into_iter().map(of_source));
         if combined.is_some() {
-            let degrees = budget.degrees_of_freedom().map_or("∞".to_owned(), |nu| language.fixed(nu.floor(), 0));
+            let degrees = degrees_of_freedom.map_or("∞".to_owned(), |nu| language.fixed(nu.floor(), 0));
             cells.extend([shown(combined), degrees]);
         } else {
             cells.extend([messages.not_determined.to_owned(), String::new()]);

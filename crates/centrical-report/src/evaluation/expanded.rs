@@ -1,7 +1,7 @@
 //! Expanded uncertainties, as all documents state them: for one probability, with the coverage factor that belongs to it.
 
 use centrical::uncertainty::Degrees;
-use centrical_session::{BudgetSummary, CalibrationResult, ParameterEstimate, PredictionReport};
+use centrical_session::{CalibrationResult, ParameterEstimate, PredictionReport};
 
 /// Coverage factor where the degrees of freedom are infinite.
 const COVERAGE_FACTOR: f64 = 2.0;
@@ -26,43 +26,9 @@ pub(crate) fn expanded_of_normal(standard_uncertainty: f64) -> f64 {
     COVERAGE_FACTOR * standard_uncertainty
 }
 
-/// What the budget of a result says of a parameter, SI. Its numbers stand in the order of the parameters.
-pub(crate) struct BudgetOf<'r> {
-    budget: &'r BudgetSummary,
-    place: usize,
-}
-
-impl<'r> BudgetOf<'r> {
-    /// Of the parameter of this name; `None` without a budget, or without such a parameter.
-    pub fn parameter(result: &'r CalibrationResult, name: &str) -> Option<Self> {
-        let place = result.parameters.iter().position(|parameter| parameter.name == name)?;
-        Some(Self { budget: result.budget.as_ref()?, place })
-    }
-
-    /// What each source leaves; `None` of a parameter that is not determined.
-    pub fn sources(&self) -> impl Iterator<Item = Option<f64>> {
-        self.budget.sources.iter().map(|source| self.number(&source.standard_uncertainty))
-    }
-
-    /// All of them together.
-    pub fn combined(&self) -> Option<f64> {
-        self.number(&self.budget.combined)
-    }
-
-    /// Effective degrees of freedom (Welch-Satterthwaite); `None` if they are infinite.
-    pub fn degrees_of_freedom(&self) -> Option<f64> {
-        self.number(&self.budget.degrees_of_freedom)
-    }
-
-    fn number(&self, numbers: &[Option<f64>]) -> Option<f64> {
-        numbers.get(self.place).copied().flatten()
-    }
-}
-
 /// Expanded uncertainty of a parameter of the result; `None` if it is not determined.
 pub(crate) fn expanded(result: &CalibrationResult, parameter: &ParameterEstimate) -> Option<Expanded> {
-    let degrees_of_freedom =
-        BudgetOf::parameter(result, &parameter.name).and_then(|budget| budget.degrees_of_freedom());
+    let degrees_of_freedom = result.budget_of(&parameter.name).and_then(|budget| budget.degrees_of_freedom);
     Some(expanded_of(parameter.standard_uncertainty?, degrees_of_freedom))
 }
 

@@ -7,6 +7,7 @@ use centrical::uncertainty::Estimates;
 use centrical_table::write_whole;
 use nalgebra::DMatrix;
 
+use super::budget_and_checks::ParameterBudget;
 use super::contradiction::contradiction;
 use super::schema::{CalibrationResult, ParameterEstimate, PlateauSummary, SCHEMA};
 use crate::error::{Error, Place};
@@ -76,6 +77,12 @@ impl CalibrationResult {
     /// A parameter by name.
     pub fn parameter(&self, name: &str) -> Option<&ParameterEstimate> {
         self.parameters.iter().find(|p| p.name == name)
+    }
+
+    /// What the budget says of the parameter of this name; nothing without a budget, or without such a parameter.
+    pub fn budget_of(&self, name: &str) -> Option<ParameterBudget> {
+        let place = self.parameters.iter().position(|p| p.name == name)?;
+        Some(self.budget.as_ref()?.parameter(place))
     }
 
     /// Reads a result.
