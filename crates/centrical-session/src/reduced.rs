@@ -1,8 +1,8 @@
 //! The plateau means of a session, wherever they come from.
 
-use centrical::reduction::{Arc, ClockAgreement, ClockOffset, LeftOut, MeasuredSpeed, PlateauMean};
+use centrical::reduction::{ClockAgreement, ClockOffset, MeasuredSpeed, PlateauMean};
 use centrical::uncertainty::BetweenRests;
-use centrical::{MeasurementModel, Observation, SetPoint, TypeB};
+use centrical::{MeasurementModel, Observation, SetPoint};
 use nalgebra::{Matrix3, Vector3};
 
 use crate::error::Error;
@@ -44,56 +44,16 @@ pub struct MountingFindings {
 }
 
 /// The mean reading of a plateau and what it was made of.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct ReducedPlateau {
-    /// First and last instant used, the record's clock [s]; none for a plateau that came already averaged.
-    pub window: Option<[f64; 2]>,
     /// Samples used.
     pub samples: u64,
-    /// Samples of the window left out.
-    pub rejected: u64,
     /// Mean reading [m/s^2].
     pub mean: Vector3<f64>,
     /// Its covariance [m^2/s^4].
     pub covariance: Matrix3<f64>,
-    /// Amplitude of the once-per-revolution term [m/s^2]; none at rest and for a plateau that came already averaged.
-    pub once_per_revolution: Option<Vector3<f64>>,
-    /// Median speed by the telemetry [rad/s].
-    pub measured_speed: Option<f64>,
-    /// What it shows beside its mean; none for a plateau that came already averaged.
-    pub steadiness: Option<Steadiness>,
-    /// How the unit turns, of an arc of slow rotation.
-    pub arc: Option<Arc>,
-    /// Variance of a single reading about the fit [m^2/s^4]; none for a plateau that came already averaged.
-    pub variance: Option<Vector3<f64>>,
-}
-
-/// What a plateau shows beside its mean.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Steadiness {
-    /// Slope of the readings over the window [m/s^3].
-    pub drift: Vector3<f64>,
-    /// Its standard uncertainty [m/s^3].
-    pub drift_uncertainty: Vector3<f64>,
-    /// `c`, `s` of the once-per-revolution term `c cos(Omega t) + s sin(Omega t)`, `t` from the start of the window
-    /// [m/s^2]; zero at rest.
-    pub quadratures: [Vector3<f64>; 2],
-    /// Covariance of either [m^2/s^4].
-    pub quadrature_covariance: Matrix3<f64>,
-    /// Samples that are not used, by kind.
-    pub left_out: LeftOut,
-}
-
-impl From<&PlateauMean> for Steadiness {
-    fn from(plateau: &PlateauMean) -> Self {
-        Self {
-            drift: plateau.drift,
-            drift_uncertainty: plateau.drift_uncertainty,
-            quadratures: plateau.once_per_revolution,
-            quadrature_covariance: plateau.once_per_revolution_covariance,
-            left_out: plateau.left_out,
-        }
-    }
+    /// What its record shows; none for a plateau that came already averaged.
+    pub seen: Option<PlateauMean>,
 }
 
 impl Reduced {
@@ -152,17 +112,15 @@ impl Reduced {
     /// # Errors
     /// As [`Session::model`].
     pub fn model(&self, session: &Session) -> Result<MeasurementModel, Error> {
-        let model = session.model_at(self.set_points(session))?;
-        let stated = *model.stated();
-        Ok(match self.reading_noise() {
-            Some(reading_noise) if stated.resolution > 0.0 => model.with_stated(TypeB { reading_noise, ..stated }),
-            _ => model,
-        })
+        session.model_at(self.set_points(session), self.reading_noise())
     }
 
     /// Standard deviation of a single reading on the axis and the plateau with the least [m/s^2]; none where some plateau came already averaged.
     pub(crate) fn reading_noise(&self) -> Option<f64> {
-        let least = |plateau: &ReducedPlateau| plateau.variance.map(|variance| variance.min().sqrt());
+        let least = |plateau: &ReducedPlateau| {
+            let seen = plateau.seen.as_ref()?;
+            Some((seen.white_variance * seen.samples as f64).min().sqrt())
+        };
         self.plateaus.iter().map(least).reduce(|a, b| Some(a?.min(b?))).flatten()
     }
 
@@ -197,9 +155,19 @@ pub(crate) fn rest_rows(rests: &[ReducedPlateau]) -> Vec<PlateauRow> {
 }
 
 impl ReducedPlateau {
-    /// The mean as data of a fit.
+    /// The mean as data of a fit, of that set point.
     pub(crate) fn observation(&self, set_point: usize) -> Observation {
         Observation { set_point, mean: self.mean, covariance: self.covariance }
+    }
+
+    /// First and last instant used, the record's clock [s]; none for a plateau that came already averaged.
+    pub fn window(&self) -> Option<[f64; 2]> {
+        Some(self.seen.as_ref()?.window)
+    }
+
+    /// What its record shows of changes within it: nothing of an arc of slow rotation, whose slope is its turn.
+    pub(crate) fn steady(&self) -> Option<&PlateauMean> {
+        self.seen.as_ref().filter(|seen| seen.arc.is_none())
     }
 
     /// The mean as a row of a table, at rest.
@@ -212,47 +180,19 @@ impl ReducedPlateau {
             mean: self.mean,
             covariance: self.covariance,
             samples: self.samples,
-            bend_z: self.arc.map(|arc| arc.bend_z),
+            bend_z: self.seen.as_ref().and_then(|seen| seen.arc).map(|arc| arc.bend_z),
         }
     }
 }
 
 impl From<PlateauMean> for ReducedPlateau {
-    fn from(plateau: PlateauMean) -> Self {
-        Self {
-            window: Some(plateau.window),
-            samples: plateau.samples as u64,
-            rejected: plateau.rejected as u64,
-            mean: plateau.mean,
-            covariance: plateau.covariance,
-            once_per_revolution: amplitude(&plateau.once_per_revolution),
-            measured_speed: plateau.measured_speed,
-            variance: Some(plateau.white_variance * plateau.samples as f64),
-            // The slope of an arc of slow rotation is its turn.
-            arc: plateau.arc,
-            steadiness: plateau.arc.is_none().then(|| Steadiness::from(&plateau)),
-        }
+    fn from(seen: PlateauMean) -> Self {
+        Self { samples: seen.samples as u64, mean: seen.mean, covariance: seen.covariance, seen: Some(seen) }
     }
-}
-
-/// Amplitude of a harmonic from its two quadratures; `None` without a harmonic.
-fn amplitude([cosine, sine]: &[Vector3<f64>; 2]) -> Option<Vector3<f64>> {
-    Some(cosine.zip_map(sine, f64::hypot)).filter(|amplitude| *amplitude != Vector3::zeros())
 }
 
 impl From<&PlateauRow> for ReducedPlateau {
     fn from(row: &PlateauRow) -> Self {
-        Self {
-            window: None,
-            samples: row.samples,
-            rejected: 0,
-            mean: row.mean,
-            covariance: row.covariance,
-            once_per_revolution: None,
-            measured_speed: None,
-            steadiness: None,
-            arc: None,
-            variance: None,
-        }
+        Self { samples: row.samples, mean: row.mean, covariance: row.covariance, seen: None }
     }
 }

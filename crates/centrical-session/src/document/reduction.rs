@@ -82,9 +82,9 @@ impl ReductionReport {
                 speed: row.speed,
                 speed_uncertainty: row.speed_uncertainty,
                 angle: set_points[n].is_rest().then_some(row.angle),
-                window: plateau.window,
+                window: plateau.window(),
                 samples: plateau.samples,
-                left_out: plateau.steadiness.map(|steadiness| steadiness.left_out.into()),
+                left_out: plateau.steady().map(|seen| seen.left_out.into()),
                 mean: plateau.mean.into(),
                 covariance: rows(&plateau.covariance),
             });

@@ -8,7 +8,7 @@ use centrical::{Calibration, Experiment, FitError, Observation, SetPoint};
 use serde::{Deserialize, Serialize};
 
 use crate::experiment::PlateauName;
-use crate::reduced::{Reduced, ReducedPlateau, Steadiness};
+use crate::reduced::{Reduced, ReducedPlateau};
 
 /// Samples that are not used, by kind.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -223,9 +223,9 @@ impl TiltSummary {
     pub(crate) fn of(calibration: &Calibration, reduced: &Reduced) -> Option<Self> {
         let set_points = &calibration.data().model().experiment().set_points;
         let term = |(set_point, plateau): (usize, &ReducedPlateau)| {
-            let Steadiness { quadratures, quadrature_covariance: covariance, .. } = plateau.steadiness?;
-            let spins = !set_points[set_point].is_rest();
-            spins.then_some(OncePerRevolution { set_point, quadratures, covariance })
+            let seen = plateau.steady().filter(|_| !set_points[set_point].is_rest())?;
+            let (quadratures, covariance) = (seen.once_per_revolution, seen.once_per_revolution_covariance);
+            Some(OncePerRevolution { set_point, quadratures, covariance })
         };
         let terms: Vec<OncePerRevolution> = reduced.plateaus.iter().enumerate().filter_map(term).collect();
         calibration.tilt_while_spinning(&terms).map(|tilt| Self::new(&tilt, set_points))
@@ -273,11 +273,11 @@ impl DriftSummary {
     pub(crate) fn of(calibration: &Calibration, reduced: &Reduced) -> Result<Option<Self>, FitError> {
         let experiment = calibration.data().model().experiment();
         let slope = |(plateau, set_point): (&ReducedPlateau, &SetPoint)| {
-            let steadiness = plateau.steadiness?;
+            let seen = plateau.steady()?;
             let is_free = experiment.position_of(set_point).is_free;
             Some(Slope {
-                slope: steadiness.drift,
-                standard_uncertainty: steadiness.drift_uncertainty,
+                slope: seen.drift,
+                standard_uncertainty: seen.drift_uncertainty,
                 along: is_free.then(|| plateau.mean.normalize()),
             })
         };
@@ -311,10 +311,10 @@ impl From<SessionDrift> for SessionTrend {
 /// How the rests apart from the arm creep, each after the one before in its record.
 fn creep(experiment: &Experiment, reduced: &Reduced, slopes: &[Slope]) -> Option<CreepSummary> {
     let is_rest =
-        |n: usize| !experiment.is_on_arm(experiment.set_points[n].mounting) && reduced.plateaus[n].arc.is_none();
+        |n: usize| !experiment.is_on_arm(experiment.set_points[n].mounting) && reduced.plateaus[n].steady().is_some();
     let after = |n: usize| {
         let [before, plateau] = [n - 1, n].map(|n| &reduced.plateaus[n]);
-        let follows = is_rest(n - 1) && is_rest(n) && before.window?[1] < plateau.window?[0];
+        let follows = is_rest(n - 1) && is_rest(n) && before.window()?[1] < plateau.window()?[0];
         follows.then(|| (slopes[n], plateau.mean, plateau.mean - before.mean))
     };
     let rests: Vec<_> = (1..slopes.len()).filter_map(after).collect();
@@ -329,7 +329,7 @@ fn beyond_speed(calibration: &Calibration, reduced: &Reduced, slopes: &[Slope], 
     let beyond = |(n, slope): (usize, &Slope)| {
         let set_point = &experiment.set_points[n];
         let own = experiment.speed_uncertainty_of(set_point);
-        let Some([from, to]) = reduced.plateaus[n].window.filter(|_| own > 0.0) else { return *slope };
+        let Some([from, to]) = reduced.plateaus[n].window().filter(|_| own > 0.0) else { return *slope };
         let by_log_speed = model.linearise(set_point, calibration.fit().state()).setting_error / own;
         let speed = reduced.speeds.get(n).copied().flatten().filter(|_| counts);
         let measured = speed.and_then(|speed| speed.slope);

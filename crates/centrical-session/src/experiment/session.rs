@@ -193,17 +193,23 @@ impl Session {
     /// # Errors
     /// If a prior names no parameter, or is invalid: only for a session changed since it was read.
     pub fn model(&self) -> Result<MeasurementModel, Error> {
-        self.model_at(self.experiment.set_points.clone())
+        self.model_at(self.experiment.set_points.clone(), None)
     }
 
-    /// The measurement model with other set points, such as the measured ones.
+    /// The measurement model with other set points, such as the measured ones, and the noise of a single reading [m/s^2] where records show
+    /// it.
     ///
     /// # Errors
     /// As [`Session::model`].
-    pub(crate) fn model_at(&self, set_points: Vec<SetPoint>) -> Result<MeasurementModel, Error> {
+    pub(crate) fn model_at(
+        &self,
+        set_points: Vec<SetPoint>,
+        reading_noise: Option<f64>,
+    ) -> Result<MeasurementModel, Error> {
         let experiment = Experiment { set_points, ..self.experiment.clone() };
-        let model =
-            MeasurementModel::new(experiment, self.error_model.clone(), &self.extensions).with_stated(self.type_b);
+        let reading_noise = reading_noise.unwrap_or(self.type_b.reading_noise);
+        let stated = TypeB { reading_noise, ..self.type_b };
+        let model = MeasurementModel::new(experiment, self.error_model.clone(), &self.extensions).with_stated(stated);
         if self.rest_tables.iter().any(RestTable::is_awaited) {
             // A name that stands for nothing may be that of a rest to come.
             let there: Vec<_> = self.priors.iter().filter(|prior| prior.is_of(&model)).cloned().collect();

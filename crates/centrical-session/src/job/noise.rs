@@ -202,7 +202,7 @@ impl Series {
         let session = &session.clone().on_arm();
         let (_, reduced) = reduce(session, progress)?;
         let set_points = &session.experiment.set_points;
-        let length = |k: &usize| reduced.plateaus[*k].window.map_or(0.0, |[from, to]| to - from);
+        let length = |k: &usize| reduced.plateaus[*k].window().map_or(0.0, |[from, to]| to - from);
         let longest = || {
             (0..set_points.len()).filter(|k| set_points[*k].is_rest()).max_by(|a, b| length(a).total_cmp(&length(b)))
         };
@@ -210,7 +210,7 @@ impl Series {
         let none = |found: &str| Error::content(&session.file, Place::Whole, found, "a plateau at rest in a record");
         let set_point = set_point.ok_or_else(|| none("no plateau at rest"))?;
         let files = &session.mountings[set_points[set_point].mounting];
-        let (Some(window), Some(record)) = (reduced.plateaus[set_point].window, files.records.first()) else {
+        let (Some(window), Some(record)) = (reduced.plateaus[set_point].window(), files.records.first()) else {
             return Err(none("plateaus already averaged"));
         };
         let columns = &session.columns;

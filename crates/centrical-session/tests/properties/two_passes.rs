@@ -58,7 +58,7 @@ fn from_files_as_from_memory() {
         assert_eq!(reduced.plateaus.len(), means.len());
         for (from_file, mean) in reduced.plateaus.iter().zip(&means) {
             assert_eq!((from_file.mean, from_file.covariance), (mean.mean, mean.covariance));
-            assert_eq!((from_file.window, from_file.samples), (Some(mean.window), mean.samples as u64));
+            assert_eq!((from_file.window(), from_file.samples), (Some(mean.window), mean.samples as u64));
         }
     }
 }

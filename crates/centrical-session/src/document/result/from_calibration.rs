@@ -19,7 +19,7 @@ use crate::document::json::rows;
 use crate::document::steadiness::{DriftSummary, TiltSummary};
 use crate::experiment::{OutputUnit, Session};
 use crate::record::{Columns, Scale};
-use crate::reduced::{Reduced, ReducedPlateau, Steadiness};
+use crate::reduced::{Reduced, ReducedPlateau};
 use crate::store::TermSummary;
 
 impl CalibrationResult {
@@ -291,7 +291,8 @@ fn plateaus(calibration: &Calibration, session: &Session, reduced: &Reduced) -> 
         let (covariance, residual) = next.unwrap_or_else(|| against(calibration, set_point, plateau));
         index = if previous == Some(set_point.mounting) { index + 1 } else { 0 };
         previous = Some(set_point.mounting);
-        let turning = plateau.steadiness.filter(|_| !set_point.is_rest());
+        let (seen, steady) = (plateau.seen.as_ref(), plateau.steady());
+        let turning = steady.filter(|_| !set_point.is_rest());
         summaries.push(PlateauSummary {
             mounting: set_point.mounting + 1,
             index,
@@ -300,27 +301,34 @@ fn plateaus(calibration: &Calibration, session: &Session, reduced: &Reduced) -> 
             set_speed: (session.speeds.is_in_files() && !set_point.is_rest())
                 .then(|| session.experiment.set_points[n].omega),
             angle: set_point.is_rest().then_some(set_point.angle),
-            window: plateau.window,
+            window: plateau.window(),
             samples: plateau.samples,
-            rejected: plateau.rejected,
+            rejected: seen.map_or(0, |seen| seen.rejected as u64),
             mean: plateau.mean.into(),
             covariance: rows(&plateau.covariance),
             fit_covariance: rows(&covariance),
             residual: residual.into(),
             specific_force: Some(model.specific_force(set_point, fit.state()).into()),
-            once_per_revolution: plateau.once_per_revolution.map(Into::into),
+            once_per_revolution: seen.and_then(|seen| amplitude(&seen.once_per_revolution)).map(Into::into),
             once_per_revolution_uncertainty: turning
-                .map(|seen| seen.quadrature_covariance.diagonal().map(f64::sqrt).into()),
-            once_per_revolution_phase: turning
-                .map(|Steadiness { quadratures: [c, s], .. }| c.zip_map(&s, |c, s| (-s).atan2(c)).into()),
-            drift: plateau.steadiness.map(|seen| seen.drift.into()),
-            drift_uncertainty: plateau.steadiness.map(|seen| seen.drift_uncertainty.into()),
-            left_out: plateau.steadiness.map(|seen| seen.left_out.into()),
-            measured_speed: plateau.measured_speed,
+                .map(|seen| seen.once_per_revolution_covariance.diagonal().map(f64::sqrt).into()),
+            once_per_revolution_phase: turning.map(|seen| {
+                let [c, s] = &seen.once_per_revolution;
+                c.zip_map(s, |c, s| (-s).atan2(c)).into()
+            }),
+            drift: steady.map(|seen| seen.drift.into()),
+            drift_uncertainty: steady.map(|seen| seen.drift_uncertainty.into()),
+            left_out: steady.map(|seen| seen.left_out.into()),
+            measured_speed: seen.and_then(|seen| seen.measured_speed),
             held_out,
         });
     }
     summaries
+}
+
+/// Amplitude of a harmonic from its two quadratures; `None` without a harmonic.
+fn amplitude([cosine, sine]: &[Vector3<f64>; 2]) -> Option<Vector3<f64>> {
+    Some(cosine.zip_map(sine, f64::hypot)).filter(|amplitude| *amplitude != Vector3::zeros())
 }
 
 /// Covariance with the speed's term and residual of a plateau against a fit that it has no part in.

@@ -253,7 +253,8 @@ fn clocks(session: &Session, reduced: &Reduced) -> Vec<SpeedFinding> {
         }
         let plateaus = session.experiment.set_points.iter().zip(&reduced.plateaus).zip(&reduced.speeds);
         let is_missing = |plateau: &ReducedPlateau| {
-            plateau.measured_speed.is_none() || plateau.window.is_some_and(|window| share(window, agreement.span) < 0.5)
+            let Some(seen) = &plateau.seen else { return true };
+            seen.measured_speed.is_none() || share(seen.window, agreement.span) < 0.5
         };
         let missing = plateaus
             .filter(|((s, plateau), speed)| s.mounting == m && !s.is_rest() && speed.is_none() && is_missing(plateau))

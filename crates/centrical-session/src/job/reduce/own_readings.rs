@@ -47,13 +47,13 @@ pub(crate) fn refuse_repeated_rests(session: &Session, reduced: &Reduced, file: 
         set_points.filter(|(set_point, _)| is_rest(set_point)).map(|(_, plateau)| plateau).collect();
     // White noise is too much where the noise is blue, or a table hums.
     let least_noise = |plateau: &ReducedPlateau| {
-        let white = plateau.variance.unwrap_or_default() / plateau.samples.max(1) as f64;
+        let white = plateau.seen.as_ref().map(|seen| seen.white_variance).unwrap_or_default();
         white.inf(&plateau.covariance.diagonal()).map(f64::sqrt)
     };
     let means: Vec<_> = rests.iter().map(|plateau| (plateau.mean, least_noise(plateau))).collect();
     let Some(RepeatedRests { first: (earlier, later), count }) = RepeatedRests::among(&means) else { return Ok(()) };
     let named = |rest: usize| {
-        let at = rests[rest].window.map_or_else(String::new, |[from, _]| format!(" at {from:.1} s"));
+        let at = rests[rest].window().map_or_else(String::new, |[from, _]| format!(" at {from:.1} s"));
         format!("rest {}{at}", rest + 1)
     };
     let found = format!(
@@ -128,7 +128,7 @@ fn readings<'a>(session: &'a Session, reduced: &'a Reduced) -> Vec<Readings<'a>>
     let set_points = session.experiment.set_points.iter().zip(&reduced.plateaus);
     let of_mean = set_points.filter_map(|(set_point, plateau)| {
         let (owner, file) = owners[set_point.mounting];
-        let window = plateau.window.or_else(|| (owner >= arm).then_some([f64::NEG_INFINITY, f64::INFINITY]))?;
+        let window = plateau.window().or_else(|| (owner >= arm).then_some([f64::NEG_INFINITY, f64::INFINITY]))?;
         let file = file?.as_path();
         Some(Readings { sha256: hashes.get(file)?, file, window, owner })
     });
