@@ -10,15 +10,37 @@ mod octave;
 mod python;
 mod statement;
 
+use std::path::Path;
+
 use centrical_compensate::{Compensation, NotInvertible, Term};
-use centrical_session::{CalibrationResult, ObjectionName, OutputSummary};
+use centrical_session::{CalibrationResult, Error, ObjectionName, OutputSummary};
 
 use self::model::Model;
 pub use self::statement::NamedTerm;
 use crate::language::Language;
 
+/// The compensation of the result in `file`, for specific forces up to `range` [m/s^2], by default the range of the result.
+///
+/// # Errors
+/// [`Error`] where the result lacks a coefficient, or its model is not certain to be invertible over the range.
+pub(crate) fn source_of_result(
+    result: &CalibrationResult,
+    file: &Path,
+    range: Option<f64>,
+) -> Result<Vec<SourceFile>, Error> {
+    let file = || file.to_owned();
+    let terms = result.error_terms().map_err(|source| Error::ErrorModel { file: file(), source })?;
+    let range = range.map_or_else(|| result.compensation_range(&terms), Ok);
+    let names = result.model.error_model.iter().map(|term| term.name.clone());
+    let terms: Vec<NamedTerm> = names.zip(terms).map(|(name, term)| NamedTerm { name, term }).collect();
+    let axes = result.axes.as_ref().map(|axes| &axes.matrix);
+    range
+        .and_then(|range| compensation_source(&heading(result), &terms, result.output.as_ref(), range, axes))
+        .map_err(|source| Error::NotInvertible { file: file(), source })
+}
+
 /// What the first comment says of a result.
-pub(crate) fn heading(result: &CalibrationResult) -> Vec<String> {
+fn heading(result: &CalibrationResult) -> Vec<String> {
     let session = &result.session;
     let calibrated = if session.date.is_empty() { String::new() } else { format!(", calibrated {}", session.date) };
     let axes = result.axes.as_ref().map(|axes| {

@@ -1,7 +1,7 @@
 //! The error model as statements of a language: `error_2 += c[4] * f_1`, a line for each term and derivative.
 
 use centrical_compensate::{Monomial, Term};
-use centrical_session::{CalibrationResult, NoErrorModel, harmless_line};
+use centrical_session::harmless_line;
 
 /// A term and the name of its coefficient, for the comments.
 #[derive(Debug, Clone, PartialEq)]
@@ -10,17 +10,6 @@ pub struct NamedTerm {
     pub name: String,
     /// The term.
     pub term: Term,
-}
-
-impl NamedTerm {
-    /// The terms of a result with their estimated coefficients.
-    ///
-    /// # Errors
-    /// [`NoErrorModel`] as [`CalibrationResult::error_terms`].
-    pub fn of(result: &CalibrationResult) -> Result<Vec<Self>, NoErrorModel> {
-        let names = result.model.error_model.iter().map(|term| term.name.clone());
-        Ok(names.zip(result.error_terms()?).map(|(name, term)| Self { name, term }).collect())
-    }
 }
 
 /// How a language writes what the error model is made of. Indices count from 0.

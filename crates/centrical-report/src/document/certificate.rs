@@ -13,7 +13,7 @@ use super::objection::{objection, refusal};
 use super::reading_error::{error_note, error_table};
 use super::rests_on::{counts_as_exact, presuppositions};
 use super::switch_on::switch_on;
-use super::tables::{coefficients, nominal_output, of_arm, rows_by_group, serial};
+use super::tables::{by_group, nominal_output, of_arm, rows_by_group, serial};
 use crate::evaluation::{UnitStatement, equations, expanded, symbol};
 use crate::language::Language;
 
@@ -233,7 +233,7 @@ fn results(result: &CalibrationResult, language: Language) -> Vec<Block> {
         (messages.value_si, 0.3, Align::Right),
         ("", 0.1, Align::Left),
     ];
-    let rows = rows_by_group(result, &coefficients(result), language);
+    let rows = rows_by_group(result, &by_group(result, true), language);
     let table = Table { rows, ..Table::numbers(columns, []) };
     let mut blocks = vec![Block::heading(messages.results, 14), Block::paragraph(messages.results_model)];
     blocks.extend(equations(result).map(Block::Paragraph));
@@ -291,7 +291,7 @@ fn results_before(result: &CalibrationResult, before: &CalibrationResult, langua
         let known = |(value, expanded)| language.plus_minus(value * factor, expanded * factor);
         estimate.map_or_else(|| messages.not_determined.to_owned(), known)
     };
-    let rows = coefficients(result).into_iter().map(|after| {
+    let rows = by_group(result, true).into_iter().map(|after| {
         let (factor, unit) = customary(&after.unit, after.group);
         let [was, is] = [before, result].map(|result| shown(result, &after.name, factor));
         vec![symbol(&after.name), was, is, language.unit(unit)]

@@ -12,7 +12,7 @@ use super::objection::{pattern, refusal, rival};
 use super::reading_error::{error_note, error_table, headline_table};
 use super::rests_on::{all_rests_on, rests_on};
 use super::switch_on::switch_on;
-use super::tables::{by_group, coefficients, nominal_output, of_arm, parameters, serial};
+use super::tables::{by_group, nominal_output, of_arm, parameters, serial};
 use crate::evaluation::{UnitStatement, UnitVerdict, equations, symbol};
 use crate::figure::{Figure, positions};
 use crate::language::Language;
@@ -169,7 +169,7 @@ fn symbols(result: &CalibrationResult, language: Language) -> Vec<Fact> {
         let names: Vec<String> = of.iter().map(|parameter| symbol(&parameter.name)).collect();
         (names.join(", "), (language.messages().words.meaning)(of[0].group).to_owned())
     };
-    coefficients(result).chunk_by(|a, b| a.group == b.group).map(named).collect()
+    by_group(result, true).chunk_by(|a, b| a.group == b.group).map(named).collect()
 }
 
 /// Errors of the readings in full.
@@ -286,12 +286,10 @@ fn geometry_parameters(result: &CalibrationResult, language: Language) -> Vec<Bl
 fn with_parameters(
     mut blocks: Vec<Block>,
     result: &CalibrationResult,
-    of_instrument: bool,
+    of_unit: bool,
     language: Language,
 ) -> Vec<Block> {
-    let is_of_instrument = |name: &str| result.model.error_model.iter().any(|term| term.name == name);
-    let shown = result.parameters.iter().filter(|p| is_of_instrument(&p.name) == of_instrument);
-    let shown = by_group(&shown.collect::<Vec<_>>());
+    let shown = by_group(result, of_unit);
     if shown.is_empty() {
         return Vec::new();
     }

@@ -41,16 +41,12 @@ pub(super) fn rows_by_group(result: &CalibrationResult, shown: &[&ParameterEstim
     shown.chunk_by(|a, b| a.group == b.group).flat_map(in_group).collect()
 }
 
-/// The parameters by group, groups in the order of their first member.
-pub(super) fn by_group<'p>(parameters: &[&'p ParameterEstimate]) -> Vec<&'p ParameterEstimate> {
-    let mut sorted = parameters.to_vec();
-    sorted.sort_by_key(|parameter| parameters.iter().position(|first| first.group == parameter.group));
+/// The parameters of the unit, or all others, by group: groups in the order of their first member.
+pub(super) fn by_group(result: &CalibrationResult, of_unit: bool) -> Vec<&ParameterEstimate> {
+    let shown: Vec<_> = result.parameters.iter().filter(|p| result.is_of_unit(p) == of_unit).collect();
+    let mut sorted = shown.clone();
+    sorted.sort_by_key(|parameter| shown.iter().position(|first| first.group == parameter.group));
     sorted
-}
-
-/// The coefficients of the error model, by group.
-pub(super) fn coefficients(result: &CalibrationResult) -> Vec<&ParameterEstimate> {
-    by_group(&result.model.error_model.iter().filter_map(|term| result.parameter(&term.name)).collect::<Vec<_>>())
 }
 
 /// `axis 1`, `axis 2`, `axis 3`.

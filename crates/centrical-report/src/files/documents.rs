@@ -9,7 +9,7 @@ use centrical_session::{
     UnknownUnit, claim_folder, create_folder, history_up_to, read_history, refuse_inputs, write_whole,
 };
 
-use crate::codegen::{NamedTerm, compensation_source, heading};
+use crate::codegen::source_of_result;
 use crate::dcc::digital_certificate;
 use crate::document::{Attachment, Document, Issuer, certificate, report};
 use crate::evaluation::UnitStatement;
@@ -117,7 +117,12 @@ pub fn write_documents(request: &DocumentRequest) -> Result<Documents, Error> {
         }
     }
     if let Some(folder) = &request.code {
-        write_source(&result, request, &inputs, folder)?;
+        let sources = source_of_result(&result, &request.result, request.range)?;
+        let _claim = claim_folder(folder)?;
+        refuse_inputs(&sources.iter().map(|source| folder.join(source.name)).collect::<Vec<_>>(), &inputs)?;
+        for source in sources {
+            write_whole(&folder.join(source.name), source.text.as_bytes())?;
+        }
     }
     let other_days = issuer.as_ref().and_then(|issuer| issuer.other_days(&result));
     Ok(Documents { unit: issuer.and_then(|issuer| issuer.unit), other_days, result })
@@ -276,29 +281,4 @@ fn dcc(result: &CalibrationResult, issuer: &Issuer, language: Language, file: &P
         let expected = "a fraction of powers of m, s and rad such as s^2/m, or 1";
         Error::content(file, Place::Whole, format!("a parameter in {found:?}"), expected)
     })
-}
-
-/// Writes the compensation as source code.
-fn write_source(
-    result: &CalibrationResult,
-    request: &DocumentRequest,
-    inputs: &[PathBuf],
-    folder: &Path,
-) -> Result<(), Error> {
-    let file = || request.result.clone();
-    let no_model = |source| Error::ErrorModel { file: file(), source };
-    let terms = NamedTerm::of(result).map_err(no_model)?;
-    let plain = result.error_terms().map_err(no_model)?;
-    let sources = (request.range.map_or_else(|| result.compensation_range(&plain), Ok))
-        .and_then(|range| {
-            let axes = result.axes.as_ref().map(|axes| &axes.matrix);
-            compensation_source(&heading(result), &terms, result.output.as_ref(), range, axes)
-        })
-        .map_err(|source| Error::NotInvertible { file: file(), source })?;
-    let _claim = claim_folder(folder)?;
-    refuse_inputs(&sources.iter().map(|source| folder.join(source.name)).collect::<Vec<_>>(), inputs)?;
-    for source in sources {
-        write_whole(&folder.join(source.name), source.text.as_bytes())?;
-    }
-    Ok(())
 }

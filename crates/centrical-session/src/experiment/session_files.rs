@@ -44,16 +44,11 @@ impl Session {
         file.map(|file| telemetry_of(self.folder.open(file, TELEMETRY)?, &self.columns, extent)).transpose()
     }
 
-    /// Reads the pulses of a mounting, if it has any.
+    /// Reads the pulses of a mounting, if it has any, which may still be coming.
     ///
     /// # Errors
     /// As [`RecordReader`](crate::RecordReader).
-    pub fn pulses(&self, mounting: usize) -> Result<Option<PulseTrain>, Error> {
-        self.pulses_to(mounting, Extent::Whole)
-    }
-
-    /// The same of pulses that may still be coming.
-    pub(crate) fn pulses_to(&self, mounting: usize, extent: Extent) -> Result<Option<PulseTrain>, Error> {
+    pub(crate) fn pulses(&self, mounting: usize, extent: Extent) -> Result<Option<PulseTrain>, Error> {
         let file = self.mountings.get(mounting).and_then(|m| m.pulses.as_ref());
         let per_revolution = self.pulses_per_revolution();
         let read = |file: &PathBuf| {

@@ -120,8 +120,7 @@ fn of_error_model(result: &CalibrationResult) -> Option<Contradiction> {
             ));
         }
     }
-    let has_term = |p: &ParameterEstimate| terms.iter().any(|term| term.name == p.name);
-    let missing = result.parameters.iter().find(|p| ErrorModel::has_name(&p.name) && !has_term(p))?;
+    let missing = result.parameters.iter().find(|p| ErrorModel::has_name(&p.name) && !result.is_of_unit(p))?;
     Some((format!("the parameter {:?} without its term in error_model", missing.name), "one".to_owned()))
 }
 

@@ -61,8 +61,12 @@ impl CalibrationResult {
         self.observability.null_directions.iter().map(chiefly).collect()
     }
 
-    /// The estimates that the data determine, of the coefficients of the error model alone: what belongs to the unit
-    /// and not to how it was mounted.
+    /// Whether a parameter belongs to the unit, and not to how it was mounted: a coefficient of the error model.
+    pub fn is_of_unit(&self, parameter: &ParameterEstimate) -> bool {
+        self.model.error_model.iter().any(|term| term.name == parameter.name)
+    }
+
+    /// The estimates that the data determine, of the coefficients of the error model alone.
     pub fn of_unit(&self) -> Estimates {
         let place = |name: &str| self.parameters.iter().position(|p| p.name == name && p.value.is_some());
         let own: Vec<usize> = self.model.error_model.iter().filter_map(|term| place(&term.name)).collect();

@@ -7,7 +7,7 @@ use centrical::reduction::{
     Located, PulseTrain, ReducedMounting, ReductionError, ScheduledPlateau, SpeedTrace, Survey,
 };
 use centrical::{Experiment, OnProgress};
-use centrical_table::estimate_rows;
+use centrical_table::{Extent, estimate_rows};
 use nalgebra::{Matrix3, Vector3};
 use rayon::prelude::*;
 
@@ -103,7 +103,7 @@ fn reduce_mounting(
     let refused = |source| Error::reduction(file, number, source);
     let (survey, interpolated) = record.survey(cache)?;
     let survey = survey.with_resolution(session.type_b.resolution);
-    let pulses = if session.speeds.counts_pulses() { session.pulses(number)? } else { None };
+    let pulses = if session.speeds.counts_pulses() { session.pulses(number, Extent::Whole)? } else { None };
     let speeds = ShownSpeeds { telemetry: session.telemetry(number)?, pulses };
     let located = located(session, number, file, &survey, &speeds)?;
     let means = record.means(cache, &located)?.into_iter().collect::<Result<_, _>>().map_err(refused)?;

@@ -346,7 +346,7 @@ impl<'s> Watch<'s> {
                 ShownSpeeds { telemetry, pulses: None }
             }
             SpeedSource::Pulses => {
-                let pulses = self.session.pulses_to(mounting, Extent::Growing).ok().flatten();
+                let pulses = self.session.pulses(mounting, Extent::Growing).ok().flatten();
                 ShownSpeeds { telemetry: None, pulses }
             }
             SpeedSource::Plateaus => ShownSpeeds::default(),
