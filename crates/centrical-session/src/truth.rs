@@ -10,9 +10,10 @@ use serde::Deserialize;
 
 use crate::error::Error;
 use crate::experiment::{Session, SpeedSource, Speeds, TomlPath};
-use crate::quantity::Dimension::{Acceleration, Angle, Frequency, Ratio, Speed, Time};
-use crate::quantity::{Dimension, Quantity};
+use crate::quantity::Quantity;
 use crate::settings::{from_toml, read_settings};
+use crate::units::Dimension;
+use crate::units::Dimension::{Acceleration, Angle, Frequency, Ratio, Speed, Time};
 
 /// What is simulated: the model with its unknowns, their true values, and the equipment.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,11 +1,134 @@
-//! The units of parameters: SI as results name them, D-SI, those in which people of the field read and write them, and
-//! the symbols of all. 1 g = 9.80665 m/s^2.
+//! The units of quantities and parameters: those in which people of the field write and read them, SI as results name them, D-SI,
+//! and the symbols of all. 1 g = 9.80665 m/s^2.
 
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 use centrical::{Group, STANDARD_GRAVITY};
 
-use crate::quantity::{Dimension, NotThatQuantity, Quantity};
+/// What a quantity measures, which decides the units it may have.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Dimension {
+    /// In m.
+    Length,
+    /// In rad.
+    Angle,
+    /// In rad/s.
+    Speed,
+    /// In m/s^2.
+    Acceleration,
+    /// In s.
+    Time,
+    /// In 1/s.
+    Frequency,
+    /// Square root of a one-sided spectral density, in m/s^2/sqrt(Hz).
+    NoiseDensity,
+    /// Dimensionless.
+    Ratio,
+}
+
+impl Dimension {
+    /// `value` [SI] as a number in `unit`: the one with the fewest digits that is read as the same `f64`. Where the factor of
+    /// the unit skips that `f64`, the nearest number, which is read to within one part in 2^52. `None` if `unit` is not
+    /// of this dimension.
+    pub(crate) fn written(self, value: f64, unit: &str) -> Option<String> {
+        let factor = self.factor(unit)?;
+        // Without the sign of a negative zero.
+        let (nearest, value) = (value / factor + 0.0, value + 0.0);
+        let rounded = (0..17).filter_map(|digits| format!("{nearest:.digits$e}").parse::<f64>().ok());
+        let neighbours = [nearest, nearest.next_down(), nearest.next_up()];
+        let number = rounded.chain(neighbours).find(|number| number * factor == value).unwrap_or(nearest);
+        Some(format!("{number} {unit}"))
+    }
+
+    /// Factor that takes a number in `unit` to SI; `None` if `unit` is not of this dimension.
+    pub fn factor(self, unit: &str) -> Option<f64> {
+        self.units().iter().find(|(name, _)| *name == unit).map(|(_, factor)| *factor)
+    }
+
+    /// Units and their factors to SI, the SI unit first.
+    pub fn units(self) -> &'static [(&'static str, f64)] {
+        const DEGREE: f64 = PI / 180.0;
+        match self {
+            Self::Length => {
+                &[("m", 1.0), ("cm", 1e-2), ("mm", 1e-3), ("um", 1e-6), ("µm", 1e-6), ("μm", 1e-6), ("in", 0.0254)]
+            }
+            Self::Angle => &[
+                ("rad", 1.0),
+                ("mrad", 1e-3),
+                ("urad", 1e-6),
+                ("µrad", 1e-6),
+                ("μrad", 1e-6),
+                ("deg", DEGREE),
+                ("°", DEGREE),
+                ("arcmin", DEGREE / 60.0),
+                ("arcsec", DEGREE / 3600.0),
+                ("rev", TAU),
+            ],
+            Self::Speed => &[
+                ("rad/s", 1.0),
+                ("rpm", TAU / 60.0),
+                ("rev/min", TAU / 60.0),
+                ("rev/s", TAU),
+                ("Hz", TAU),
+                ("deg/s", DEGREE),
+                ("°/s", DEGREE),
+            ],
+            Self::Acceleration => &[
+                ("m/s^2", 1.0),
+                ("m/s2", 1.0),
+                ("m/s²", 1.0),
+                ("mm/s^2", 1e-3),
+                ("g", STANDARD_GRAVITY),
+                ("mg", 1e-3 * STANDARD_GRAVITY),
+                ("ug", 1e-6 * STANDARD_GRAVITY),
+                ("µg", 1e-6 * STANDARD_GRAVITY),
+                ("μg", 1e-6 * STANDARD_GRAVITY),
+                ("Gal", 1e-2),
+                ("mGal", 1e-5),
+            ],
+            Self::Time => &[
+                ("s", 1.0),
+                ("ms", 1e-3),
+                ("us", 1e-6),
+                ("µs", 1e-6),
+                ("μs", 1e-6),
+                ("ns", 1e-9),
+                ("min", 60.0),
+                ("h", 3600.0),
+            ],
+            Self::NoiseDensity => &[
+                ("m/s^2/sqrt(Hz)", 1.0),
+                ("mg/sqrt(Hz)", 1e-3 * STANDARD_GRAVITY),
+                ("ug/sqrt(Hz)", 1e-6 * STANDARD_GRAVITY),
+                ("µg/√Hz", 1e-6 * STANDARD_GRAVITY),
+                ("μg/√Hz", 1e-6 * STANDARD_GRAVITY),
+            ],
+            Self::Frequency => &[("Hz", 1.0), ("kHz", 1e3), ("MHz", 1e6), ("1/s", 1.0)],
+            Self::Ratio => &[("1", 1.0), ("%", 1e-2), ("ppm", 1e-6), ("ppb", 1e-9)],
+        }
+    }
+
+    /// What can be written for this dimension.
+    pub(crate) fn expected(self) -> String {
+        let example = match self {
+            Self::Length => "a length such as \"0.5 m\" or a number in m",
+            Self::Angle => "an angle such as \"180 deg\" or a number in rad",
+            Self::Speed => "a speed such as \"133.7 rpm\" or a number in rad/s",
+            Self::Acceleration => "an acceleration such as \"9.81523 m/s^2\" or a number in m/s^2",
+            Self::Time => "a time such as \"10 ms\" or \"1 h 30 min\", or a number in s",
+            Self::NoiseDensity => "a density such as \"20 ug/sqrt(Hz)\" or a number in m/s^2/sqrt(Hz)",
+            Self::Frequency => "a frequency such as \"1 kHz\" or a number in Hz",
+            Self::Ratio => "a ratio such as \"10 ppm\" or a plain number",
+        };
+        format!("{example} (units: {})", self.unit_list())
+    }
+
+    /// The units of this dimension, for messages; the spellings outside ASCII are left out.
+    pub(crate) fn unit_list(self) -> String {
+        let names: Vec<&str> = self.units().iter().map(|(name, _)| *name).filter(|name| name.is_ascii()).collect();
+        names.join(", ")
+    }
+}
 
 /// One micro-g in m/s^2.
 pub const MICRO_G: f64 = 1e-6 * STANDARD_GRAVITY;
@@ -76,42 +199,6 @@ pub fn customary(unit: &str, group: Group) -> (f64, &str) {
 /// Names and sizes of the units in which a parameter may be written, SI first.
 pub(crate) fn writable(unit: &str, group: Group) -> Vec<(&str, f64)> {
     std::iter::once((unit, 1.0)).chain(fitting(unit, group).map(|known| (known.name, known.size))).collect()
-}
-
-/// A quantity in the SI unit `unit` of a parameter in the group `group`: written as any quantity of its dimension, or in
-/// a unit in which people are shown it.
-pub(crate) fn in_parameter_unit(quantity: &Quantity, unit: &str, group: Group) -> Result<f64, NotThatQuantity> {
-    match unit {
-        "rad" => quantity.si(Dimension::Angle),
-        "m" => quantity.si(Dimension::Length),
-        "m/s^2" => quantity.si(Dimension::Acceleration),
-        "1" if group == Group::Misalignment => {
-            quantity.si(Dimension::Ratio).or_else(|not| quantity.si(Dimension::Angle).map_err(|_| not))
-        }
-        "1" => quantity.si(Dimension::Ratio),
-        _ => in_derived_unit(quantity, unit, group),
-    }
-}
-
-/// A coefficient in its SI unit or a unit in which people are shown it.
-fn in_derived_unit(quantity: &Quantity, unit: &str, group: Group) -> Result<f64, NotThatQuantity> {
-    let known = writable(unit, group);
-    let factor = |written: &str| match written {
-        "" => Some(1.0),
-        _ => known.iter().find(|(name, _)| *name == written).map(|(_, factor)| *factor),
-    };
-    let value = match quantity {
-        Quantity::Number(number) => Some(*number),
-        Quantity::Text(text) => {
-            let (number, written) = text.trim().split_once(char::is_whitespace).unwrap_or((text.trim(), ""));
-            number.parse::<f64>().ok().and_then(|number| Some(number * factor(written.trim())?))
-        }
-    };
-    let units: Vec<&str> = known.iter().map(|(name, _)| *name).collect();
-    let expected = || format!("a number in {unit} or with a unit (units: {})", units.join(", "));
-    value
-        .filter(|value| value.is_finite())
-        .ok_or_else(|| NotThatQuantity { found: quantity.to_string(), expected: expected() })
 }
 
 fn fitting(unit: &str, group: Group) -> impl Iterator<Item = &'static Customary> {

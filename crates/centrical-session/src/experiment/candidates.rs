@@ -14,8 +14,9 @@ use super::schedule::{FASTEST, duration};
 use super::session::{Session, named_extensions, read_text};
 use super::toml_path::TomlPath;
 use crate::error::{Error, quoted};
-use crate::quantity::{Dimension, NotThatQuantity, Quantity};
+use crate::quantity::{NotThatQuantity, Quantity};
 use crate::settings::from_toml;
+use crate::units::Dimension;
 
 /// Beyond these no centrifuge has time, and no search either.
 const MOST_PLATEAUS: usize = 20_000;

@@ -8,8 +8,9 @@ use super::form::{ColumnEntry, ColumnTable, ColumnsTable, UnitTable};
 use super::toml_path::TomlPath;
 use super::unit;
 use crate::error::{Error, quoted};
-use crate::quantity::{Dimension, Quantity};
+use crate::quantity::Quantity;
 use crate::record::{Column, Columns, Scale};
+use crate::units::Dimension;
 
 /// The columns, those not given at their usual names.
 pub(crate) fn columns(file: &Path, table: &ColumnsTable, unit: &UnitTable) -> Result<Columns, Error> {

@@ -18,8 +18,9 @@ use super::toml_path::TomlPath;
 use super::uncertainty::ANY_BIAS;
 use super::{prior, schedule, terms};
 use crate::error::{Error, quoted};
-use crate::quantity::{Dimension, Quantity};
+use crate::quantity::Quantity;
 use crate::settings::from_toml;
+use crate::units::Dimension;
 
 /// Name of the source's normalised experiment [K5.5].
 const NORMALISED: &str = "kozlov-2017-normalised";

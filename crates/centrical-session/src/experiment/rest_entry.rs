@@ -9,7 +9,8 @@ use super::form::{AttitudeList, TumbleTable};
 use super::stated_attitudes::{LEAST_UNCERTAIN, MOST_UNCERTAIN, StatedAttitudes, directions};
 use super::toml_path::TomlPath;
 use crate::error::Error;
-use crate::quantity::{Dimension, Quantity};
+use crate::quantity::Quantity;
+use crate::units::Dimension;
 
 /// When the unit was on in `[[tumble]]` number `n` from 0: a switch-on of its own, numbered from 1, or that of the first entry with the
 /// same name. Its change of bias may be stated in any of them.

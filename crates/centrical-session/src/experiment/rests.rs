@@ -20,7 +20,8 @@ use super::stated_attitudes::{ATTITUDES, CUBE, StatedAttitudes, as_independent, 
 use super::toml_path::TomlPath;
 use super::turning::{DISTANCE, MOST_DISTANT, Turning};
 use crate::error::{Error, Place};
-use crate::quantity::{Dimension, Quantity};
+use crate::quantity::Quantity;
+use crate::units::Dimension;
 
 /// The rests of one `[[tumble]]`.
 #[derive(Debug, Clone, PartialEq)]

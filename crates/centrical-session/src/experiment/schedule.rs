@@ -9,7 +9,8 @@ use super::form::{MountingTable, PlateauEntry};
 use super::speeds;
 use super::toml_path::TomlPath;
 use crate::error::{Error, quoted};
-use crate::quantity::{Dimension, Quantity};
+use crate::quantity::Quantity;
+use crate::units::Dimension;
 
 /// Speeds above this [rad/s], a million revolutions a minute, are a mistaken unit.
 pub(crate) const FASTEST: f64 = 1.1e5;

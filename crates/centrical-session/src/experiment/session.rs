@@ -17,9 +17,9 @@ use super::toml_path::TomlPath;
 use super::unit::OutputUnit;
 use super::{attitude, columns, schedule, speeds, terms, uncertainty, unit};
 use crate::error::{Error, quoted};
-use crate::quantity::Dimension;
 use crate::record::Columns;
 use crate::settings::{from_toml, read_settings};
+use crate::units::Dimension;
 
 /// Name of the experiment file in a session folder.
 pub(crate) const EXPERIMENT_FILE: &str = "experiment.toml";

@@ -7,7 +7,8 @@ use serde::{Deserialize, Serialize};
 use super::form::{CentrifugeTable, MeasuredTable, PresetCentrifugeTable};
 use super::toml_path::TomlPath;
 use crate::error::{Error, quoted};
-use crate::quantity::{Dimension, Quantity};
+use crate::quantity::Quantity;
+use crate::units::Dimension;
 
 /// How the speeds of plateaus are known.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

@@ -5,8 +5,8 @@ use std::path::Path;
 use centrical::Parameter;
 
 use crate::error::{Error, Place};
-use crate::quantity::{Dimension, Quantity};
-use crate::units::in_parameter_unit;
+use crate::quantity::{Quantity, in_parameter_unit};
+use crate::units::Dimension;
 
 /// A table of the experiment file.
 #[derive(Debug, Clone)]

@@ -7,7 +7,7 @@ use toml_edit::InlineTable;
 use super::form::TurningTable;
 use super::toml_path::TomlPath;
 use crate::error::Error;
-use crate::quantity::Dimension;
+use crate::units::Dimension;
 
 /// Arcs of slow rotation that count as rests.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]

@@ -8,7 +8,8 @@ use centrical::{Course, Effect, ErrorModel, Experiment, Kind, Law, Parameter, Ri
 use super::speeds::Speeds;
 use super::toml_path::TomlPath;
 use crate::error::{Error, quoted};
-use crate::quantity::{Dimension, Quantity};
+use crate::quantity::Quantity;
+use crate::units::Dimension;
 
 /// A quantity beside effects: its name, its dimension, what is beyond reason, and where it is taken.
 type Stated = (&'static str, Dimension, f64, fn(&mut TypeB, f64));

@@ -8,8 +8,8 @@ use nalgebra::Matrix3;
 use super::form::{RawTable, UnitTable};
 use super::toml_path::TomlPath;
 use crate::error::{Error, quoted};
-use crate::quantity::Dimension;
 use crate::record::Scale;
+use crate::units::Dimension;
 
 /// Proof masses and the reference point.
 pub(crate) fn geometry(file: &Path, table: &UnitTable) -> Result<Unit, Error> {

@@ -10,8 +10,9 @@ use serde::Deserialize;
 use crate::document::{Attitude, AxesName, AxesSummary, CalibrationResult};
 use crate::error::{Error, NoErrorModel};
 use crate::experiment::TomlPath;
-use crate::quantity::{Dimension, Quantity};
+use crate::quantity::Quantity;
 use crate::settings::{from_toml, read_settings};
+use crate::units::Dimension;
 
 /// Axes to state a result in.
 #[derive(Debug, Clone, PartialEq, Eq)]

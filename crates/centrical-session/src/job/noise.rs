@@ -12,8 +12,8 @@ use super::reduce::reduce;
 use crate::document::{NoiseAnalysis, ReadingNoise};
 use crate::error::{Error, Place};
 use crate::experiment::{Folder, PlateauName, Session};
-use crate::quantity::Dimension;
 use crate::record::{CheckedTable, Column, Columns, RECORD, Scale, StatedUnits, TableForm, named_columns};
+use crate::units::Dimension;
 
 /// Which readings are analysed, and how.
 #[derive(Debug, Clone, PartialEq)]

@@ -17,10 +17,11 @@ use crate::experiment::{
     ASKEW, EXPERIMENT_FILE, Folder, MOST_DISTANT, RAW_OUTPUT, RestSource, Session, StatedAttitudes, Turning,
     misalignments_left_out, refuse_another_session, write_attitudes, write_plateaus,
 };
-use crate::quantity::{Dimension, NotThatQuantity, Quantity};
+use crate::quantity::{NotThatQuantity, Quantity};
 use crate::record::{EqualColumns, Input, RECORD, Scale, named_columns};
 use crate::reduced::{Reduced, ReducedPlateau, rest_rows};
 use crate::settings::toml_text;
+use crate::units::Dimension;
 
 /// Records of a unit that rested in attitudes that only gravity shows, and what is to be made of them.
 #[derive(Debug, Clone, PartialEq)]

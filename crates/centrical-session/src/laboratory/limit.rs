@@ -7,8 +7,7 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use crate::error::{Error, Place, quoted};
-use crate::quantity::Quantity;
-use crate::units::in_parameter_unit;
+use crate::quantity::{Quantity, in_parameter_unit};
 
 /// Limits as written: a `parameter`, a `group` or a `reading`, with `low`, `high` or both, or `within` a magnitude.
 #[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]

@@ -10,7 +10,7 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use crate::error::{Error, Place};
-use crate::quantity::Dimension;
+use crate::units::Dimension;
 
 /// What a record, the record of a newtonometer, telemetry, and times of pulses are expected to be.
 pub(crate) const RECORD: &str = "a record";

@@ -7,8 +7,9 @@ use centrical_table::LARGEST_NUMBER;
 
 use super::schema::{CalibrationResult, ConvergenceSummary, Method, ObservabilitySummary, ParameterEstimate};
 use crate::experiment::RAW_OUTPUT;
-use crate::quantity::{Dimension, Quantity};
+use crate::quantity::Quantity;
 use crate::store::{ROUNDING, of_terms};
+use crate::units::Dimension;
 
 /// Relative difference of uncertainties that are computed in two ways, where sums over plateaus round.
 const BUDGET_ROUNDING: f64 = 1e-3;

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use centrical_table::{ColumnName, text_form, unit_of_word};
 
-use crate::quantity::Dimension;
+use crate::units::Dimension;
 
 /// A column, and its unit if the file names it.
 #[derive(Debug, Clone, PartialEq)]

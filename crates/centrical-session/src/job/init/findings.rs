@@ -7,7 +7,7 @@ use super::sighting::{Extremes, SeenMounting};
 use super::tumbled::Tumbled;
 use crate::error::Error;
 use crate::experiment::axes_text;
-use crate::quantity::Dimension;
+use crate::units::Dimension;
 
 /// An arm is longer than a sixth of this and shorter than six times this [m]; units of speed differ by six at least, their squares by 36.
 const USUAL_RADIUS: f64 = 0.5;

@@ -6,7 +6,7 @@ use super::sighting::{Extremes, Raw, SeenMounting};
 use super::tumbled::Tumbled;
 use crate::error::{Error, Place};
 use crate::experiment::OutputUnit as Output;
-use crate::quantity::Dimension;
+use crate::units::Dimension;
 
 /// The unit of the readings: its name and how it was recognised.
 pub(super) enum OutputUnit {

@@ -10,8 +10,8 @@ use super::column_names::Label;
 use super::file_roles::{FileColumns, Group};
 use crate::error::Error;
 use crate::experiment::Folder;
-use crate::quantity::Dimension;
 use crate::record::{Column, Columns, RecordReader, Scale, read_telemetry};
+use crate::units::Dimension;
 
 /// The part of a plateau over which readings are averaged: its middle, which clocks that differ by seconds share.
 const MIDDLE: [f64; 2] = [0.35, 0.65];

@@ -4,9 +4,9 @@ use std::path::Path;
 
 use crate::document::{ChosenRest, ChosenRests, PlanReport, PlannedMounting, PlannedPlateau};
 use crate::error::Error;
-use crate::quantity::Dimension::{self, Angle, Speed, Time};
 use crate::settings::toml_text;
 use crate::settings::{editable, read_settings};
+use crate::units::Dimension::{self, Angle, Speed, Time};
 
 impl PlanReport {
     /// The plan as the plan file of a session: the text that it was planned from, with mountings in place of candidates.
