@@ -35,7 +35,7 @@ pub(crate) use self::plateaus::LARGEST_SCALE_ERROR;
 pub use self::plateaus::{PlateauRow, PlateauTable};
 pub use self::plateaus_written::write_plateaus;
 pub(crate) use self::plateaus_written::write_plateaus_parquet;
-pub use self::rests::{KnownAttitudes, PlannedRests, RecordedRests, RestSource, RestTable};
+pub(crate) use self::rests::{KnownAttitudes, RecordedRests, RestSource, RestTable};
 pub(crate) use self::session::EXPERIMENT_FILE;
 pub use self::session::{MountingFiles, Session};
 pub(crate) use self::session_files::{refuse_another_session, refuse_session};

@@ -10,7 +10,7 @@ use crate::experiment::{PlateauRow, Session};
 use crate::record::{Input, RecordOverview};
 
 /// A session's plateau means, and the files they come from.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Reduced {
     /// One for each of the experiment's set points, in the same order.
     pub plateaus: Vec<ReducedPlateau>,
@@ -18,8 +18,6 @@ pub struct Reduced {
     pub mountings: Vec<MountingFindings>,
     /// Indices of plateaus that are not to be fitted.
     pub held_out: Vec<usize>,
-    /// What each mounting's record looks like; empty for a session that came already averaged.
-    pub records: Vec<RecordOverview>,
     /// The session's files.
     pub inputs: Vec<Input>,
     /// Speeds by the telemetry or a counter of revolutions, one for each of the set points; empty for a session that came
@@ -30,6 +28,8 @@ pub struct Reduced {
 /// What a mounting's record tells beside its means.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MountingFindings {
+    /// What the record looks like.
+    pub overview: RecordOverview,
     /// Time constant of the settling after a ramp [s]; none if no settling was seen.
     pub settling_time: Option<f64>,
     /// The centrifuge's clock against the unit's; none without telemetry, or if no ramp is in both.
@@ -132,14 +132,7 @@ impl Reduced {
 
     /// Plateaus that came already averaged.
     pub(crate) fn of_table(rows: &[PlateauRow]) -> Self {
-        Self {
-            plateaus: rows.iter().map(ReducedPlateau::from).collect(),
-            mountings: Vec::new(),
-            records: Vec::new(),
-            held_out: Vec::new(),
-            inputs: Vec::new(),
-            speeds: Vec::new(),
-        }
+        Self { plateaus: rows.iter().map(ReducedPlateau::from).collect(), ..Self::default() }
     }
 
     /// The means as data of a fit, those held out left out.

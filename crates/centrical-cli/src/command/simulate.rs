@@ -36,7 +36,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let plan = Session::read(&arguments.plan)?;
     let truth = Truth::read(&arguments.truth, &plan, arguments.seed)?;
     let plan = &truth.plan;
-    let records = plan.mountings.len() + plan.rest_tables.len();
+    let records = plan.planned_records();
     let template = "simulating {bar:30} {pos}/{len} mountings, {eta} left";
     progress::counting(template, Some(records), arguments.printing.quiet, |progress| {
         simulate_session(&truth, arguments.seed, arguments.format.into(), &arguments.out, progress)

@@ -120,7 +120,7 @@ pub fn simulate(
         let plan = Session::read(&plan)?;
         let truth = Truth::read(&truth, &plan, seed)?;
         let plan = &truth.plan;
-        work.expect((plan.mountings.len() + plan.rest_tables.len()) as u64);
+        work.expect(plan.planned_records() as u64);
         simulate_session(&truth, seed, format, &out, &|count| work.count(count))?;
         SimulationReport::of(plan, seed, &out).to_json()
     })

@@ -42,7 +42,7 @@ pub struct Planning {
     /// Over what a compensated reading is judged.
     pub range: ReadingRange,
     /// The rests beside the arm that can be chosen: the last of the candidates, in this order.
-    pub rests: Option<RestTable>,
+    pub(crate) rests: Option<RestTable>,
     /// The earlier result that `[plan]` names.
     pub earlier: Option<PathBuf>,
 }

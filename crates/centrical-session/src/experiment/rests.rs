@@ -25,7 +25,7 @@ use crate::units::Dimension;
 
 /// The rests of one `[[tumble]]`.
 #[derive(Debug, Clone, PartialEq)]
-pub struct RestTable {
+pub(crate) struct RestTable {
     /// Where they come from.
     pub source: RestSource,
     /// Their means, each of a mounting of its own; none of rests that are planned, or still to be found in a record.
@@ -42,7 +42,7 @@ pub struct RestTable {
 
 /// Where rests come from.
 #[derive(Debug, Clone, PartialEq)]
-pub enum RestSource {
+pub(crate) enum RestSource {
     /// A table of their means.
     Table(PathBuf),
     /// A record of the unit as it is turned and left alone.
@@ -60,7 +60,7 @@ impl RestSource {
 
 /// Rests that are to be found in a record.
 #[derive(Debug, Clone, PartialEq)]
-pub struct RecordedRests {
+pub(crate) struct RecordedRests {
     /// The record, or three, one for each newtonometer.
     pub files: Vec<PathBuf>,
     /// Attitudes in which the unit was laid down, in any order, where they are known.
@@ -71,7 +71,7 @@ pub struct RecordedRests {
 
 /// Rests that are planned.
 #[derive(Debug, Clone, PartialEq)]
-pub struct PlannedRests {
+pub(crate) struct PlannedRests {
     /// Where up is in each, axes of the case, of length 1.
     pub up_b: Vec<Vector3<f64>>,
     /// Duration of each, where it is stated [s].
@@ -82,7 +82,7 @@ pub struct PlannedRests {
 
 /// Attitudes of rests that are known beforehand.
 #[derive(Debug, Clone, PartialEq)]
-pub struct KnownAttitudes {
+pub(crate) struct KnownAttitudes {
     /// The table of attitudes, if they stand in one.
     pub file: Option<PathBuf>,
     /// Standard uncertainty of each, about either horizontal axis [rad].

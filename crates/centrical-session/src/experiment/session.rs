@@ -62,7 +62,7 @@ pub struct Session {
     /// What the records showed beside these means, as JSON.
     pub record_findings: Option<String>,
     /// Tables of rests in free attitudes, each rest a mounting behind the others.
-    pub rest_tables: Vec<RestTable>,
+    pub(crate) rest_tables: Vec<RestTable>,
     /// Duration that the schedule states for each set point, if it does [s].
     pub durations: Vec<Option<f64>>,
     pub(super) priors: Vec<PriorEntry>,

@@ -63,6 +63,11 @@ impl Session {
         self.speeds.measured.map_or(1.0, |measured| measured.pulses_per_revolution)
     }
 
+    /// Number of the records of a plan, as a simulation writes them: one of each mounting and of each tumble.
+    pub fn planned_records(&self) -> usize {
+        self.mountings.len() + self.rest_tables.len()
+    }
+
     /// Size of the records [bytes]; of a session that comes already averaged those of its rests alone. Records that are not there
     /// have none.
     pub fn record_bytes(&self) -> u64 {

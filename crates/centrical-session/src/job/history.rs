@@ -14,8 +14,8 @@ mod unit;
 mod units;
 
 pub use self::add::{add_result, add_results, refuse_date};
-pub use self::calibrated::{Calibrated, CalibratedParameter};
-pub(crate) use self::calibrated::{Kinds, shared_changes};
+pub use self::calibrated::Calibrated;
+pub(crate) use self::calibrated::{CalibratedParameter, Kinds, shared_changes};
 pub use self::chart::{ChartLimits, ChartRequest, RuleSet, chart, chart_of_one};
 pub use self::check::{check_store, list_store, spelling};
 pub use self::comparable::ComparedUnits;

@@ -21,7 +21,7 @@ pub(crate) use self::own_readings::{refuse_copies, refuse_repeated_rests};
 pub(crate) use self::rests::{find_rests, is_of_gravity, mean_size, with_all_rests};
 use crate::error::{Error, Place};
 use crate::experiment::Session;
-use crate::record::{Input, RecordOverview};
+use crate::record::Input;
 use crate::reduced::{MountingFindings, Reduced, ReducedPlateau};
 use crate::units::rpm;
 
@@ -58,7 +58,7 @@ pub fn reduce_without_inputs<'s>(
     session.refuse_planned_rests()?;
     let reduced = match &session.plateaus {
         Some(table) => Reduced::of_table(&table.rows),
-        None if session.mountings.is_empty() => Reduced::of_table(&[]),
+        None if session.mountings.is_empty() => Reduced::default(),
         None => pooled(session, with_thread_limit(|| Scheduler::new(session, progress).run())?)?,
     };
     let (session, rests) = with_all_rests(session, progress)?;
@@ -96,19 +96,11 @@ fn with_thread_limit<T: Send>(work: impl FnOnce() -> T + Send) -> T {
 
 /// From the mountings to the noise of all of them together, then to the covariances.
 fn pooled(session: &Session, mountings: Vec<OfRecord>) -> Result<Reduced, Error> {
-    let interpolated: Vec<Option<[u64; 3]>> = mountings.iter().map(|mounting| mounting.interpolated).collect();
-    let (reduced, records): (Vec<ReducedMounting>, Vec<RecordOverview>) =
-        mountings.into_iter().map(|mounting| (mounting.reduced, mounting.overview)).unzip();
+    let (reduced, mountings): (Vec<ReducedMounting>, Vec<MountingFindings>) =
+        mountings.into_iter().map(|mounting| (mounting.reduced, mounting.findings)).unzip();
     let noise = NoiseModel::pool(&reduced);
     let means: Vec<Vec<PlateauMean>> = reduced.iter().map(|mounting| mounting.means(&noise)).collect();
     refuse_copies(session, means.len(), &|| Cow::Borrowed(&means))?;
-    let findings = |(m, interpolated): (&ReducedMounting, &Option<[u64; 3]>)| MountingFindings {
-        settling_time: m.settling_time(),
-        clock_offset: m.clock_offset(),
-        agreement: m.clock_agreement(),
-        interpolated: *interpolated,
-        unscheduled: m.unscheduled().to_vec(),
-    };
     let experiment = &session.experiment;
     let on_arm = experiment.set_points.iter().filter(|set_point| experiment.is_on_arm(set_point.mounting));
     let set: Vec<f64> = on_arm.map(|set_point| set_point.omega).collect();
@@ -117,10 +109,8 @@ fn pooled(session: &Session, mountings: Vec<OfRecord>) -> Result<Reduced, Error>
     Ok(Reduced {
         speeds,
         plateaus: means.into_iter().flatten().map(ReducedPlateau::from).collect(),
-        mountings: reduced.iter().zip(&interpolated).map(findings).collect(),
-        records,
-        held_out: Vec::new(),
-        inputs: Vec::new(),
+        mountings,
+        ..Reduced::default()
     })
 }
 

@@ -141,7 +141,7 @@ pub fn tumble(request: &TumbleRequest, folder: &Path, progress: OnProgress) -> R
     let known = (request.attitudes.as_ref()).map(|stated| stated.of_rests(&means, &first(request))).transpose()?;
     let text = session_text(request, coarse.as_ref(), &rests);
     let plateaus: Vec<ReducedPlateau> = rests.means.into_iter().flatten().map(ReducedPlateau::from).collect();
-    let mut reduced = Reduced { plateaus, ..Reduced::of_table(&[]) };
+    let mut reduced = Reduced { plateaus, ..Reduced::default() };
     let input = |file: &Path| {
         let source = request.folder.open(file, Input::EXPECTED)?;
         Input::of(file.parent().unwrap_or(Path::new("")), &source, progress)

@@ -82,7 +82,7 @@ impl CalibrationResult {
             drift: DriftSummary::of(calibration, reduced)?,
             tilt: TiltSummary::of(calibration, reduced),
             speeds: SpeedsSummary::of(calibration, session, reduced)?,
-            records: reduced.records.clone(),
+            records: reduced.mountings.iter().map(|mounting| mounting.overview.clone()).collect(),
         })
     }
 }

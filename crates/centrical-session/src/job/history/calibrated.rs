@@ -41,7 +41,7 @@ pub struct Calibrated {
     /// The raw output that its coefficients are relative to, if it is raw.
     pub output: Option<OutputSummary>,
     /// Its parameters; calibrations of one kind share them.
-    pub parameters: Arc<Vec<CalibratedParameter>>,
+    pub(crate) parameters: Arc<Vec<CalibratedParameter>>,
     /// Estimates, SI; NaN where the data do not determine a parameter.
     pub values: Vec<f64>,
     /// Combined standard uncertainties, SI.

@@ -7,7 +7,6 @@ use rayon::prelude::*;
 use super::mounting::{OfRecord, ShownSpeeds, located};
 use crate::error::{Error, Place};
 use crate::experiment::Session;
-use crate::record::RecordOverview;
 
 /// What was recorded of one mounting, in the units of the session's columns.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -63,8 +62,7 @@ fn reduce_mounting(
         located.average(plateau, record.as_slice()).map_err(refused)
     });
     let means = means.collect::<Result<_, _>>()?;
-    let overview = RecordOverview::of(number + 1, &survey.extremes().collect::<Vec<_>>());
-    Ok(OfRecord { reduced: ReducedMounting::new(located, means), overview, interpolated: None })
+    Ok(OfRecord::new(number, &survey, ReducedMounting::new(located, means), None))
 }
 
 /// The numbers of the columns in SI.

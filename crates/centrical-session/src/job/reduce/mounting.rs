@@ -14,6 +14,7 @@ use rayon::prelude::*;
 use crate::error::{Error, Instead};
 use crate::experiment::{Session, axes_text};
 use crate::record::{MemoryBudget, RecordFile, RecordOverview, SampleCache};
+use crate::reduced::MountingFindings;
 
 /// A mounting's number, and its plateaus or why they are missing.
 type Numbered = (usize, Result<OfRecord, Error>);
@@ -86,9 +87,22 @@ fn mountings_in_flight() -> usize {
 /// What the record of a mounting comes down to.
 pub(super) struct OfRecord {
     pub reduced: ReducedMounting,
-    pub overview: RecordOverview,
-    /// Readings of newtonometers 1, 2, 3 that were interpolated to the stamps of another one, if their files have stamps of their own.
-    pub interpolated: Option<[u64; 3]>,
+    pub findings: MountingFindings,
+}
+
+impl OfRecord {
+    /// A mounting whose plateaus are averaged, and what its record shows beside.
+    pub fn new(number: usize, survey: &Survey, reduced: ReducedMounting, interpolated: Option<[u64; 3]>) -> Self {
+        let findings = MountingFindings {
+            overview: RecordOverview::of(number + 1, &survey.extremes().collect::<Vec<_>>()),
+            settling_time: reduced.settling_time(),
+            clock_offset: reduced.clock_offset(),
+            agreement: reduced.clock_agreement(),
+            interpolated,
+            unscheduled: reduced.unscheduled().to_vec(),
+        };
+        Self { reduced, findings }
+    }
 }
 
 /// Reduces the record of a mounting, its samples kept in `cache` between the passes.
@@ -107,8 +121,7 @@ fn reduce_mounting(
     let speeds = ShownSpeeds { telemetry: session.telemetry(number)?, pulses };
     let located = located(session, number, file, &survey, &speeds)?;
     let means = record.means(cache, &located)?.into_iter().collect::<Result<_, _>>().map_err(refused)?;
-    let overview = RecordOverview::of(number + 1, &survey.extremes().collect::<Vec<_>>());
-    Ok(OfRecord { reduced: ReducedMounting::new(located, means), overview, interpolated })
+    Ok(OfRecord::new(number, &survey, ReducedMounting::new(located, means), interpolated))
 }
 
 /// What shows the speeds of a mounting.
@@ -228,7 +241,7 @@ mod tests {
             session.mountings[0].records = vec![file.clone()];
             let budget = MemoryBudget::of(bytes);
             let mounting = reduce_mounting(&session, 0, &unwatched, &mut SampleCache::new(&budget)).unwrap();
-            (format!("{:?}", mounting.reduced), mounting.overview)
+            (format!("{:?}", mounting.reduced), mounting.findings)
         };
         let cached = reduced(&plain, 1 << 30);
         assert!(reduced(&plain, 0) == cached && reduced(&packed, 0) == cached && reduced(&packed, 1 << 30) == cached);
