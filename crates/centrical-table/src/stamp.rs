@@ -1,10 +1,9 @@
 //! Stamps: instants as files write and count them.
 
 mod stamps;
-mod ticks;
 mod written;
 
 pub use self::stamps::Stamps;
-pub(crate) use self::ticks::{TickForm, TickUnit};
+pub(crate) use self::stamps::{TickForm, TickUnit};
 pub use self::written::StampKind;
 pub(crate) use self::written::{kind, seconds};

@@ -1,10 +1,9 @@
 //! Tables out, as CSV or Parquet.
 
-mod beside;
 mod csv;
+mod decimal;
 mod file;
 mod folder;
-mod lines;
 mod output;
 mod outputs;
 mod parquet;
@@ -15,18 +14,16 @@ mod typed;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use self::beside::Beside;
-pub use self::beside::abandon_files;
-use self::csv::CsvTable;
 pub use self::csv::csv_field;
-pub use self::file::{write_stream, write_whole};
+use self::csv::{CsvTable, TextTable};
+pub use self::decimal::Decimals;
+use self::file::Beside;
+pub use self::file::{abandon_files, write_stream, write_whole};
 pub use self::folder::{ClaimedFolder, claim_folder, create_folder};
-use self::lines::TextTable;
 use self::output::SteadyFile;
 pub use self::outputs::{Outputs, refuse_inputs};
 use self::parquet::{Layout, ParquetTable};
 use self::row_groups::RowGroups;
-pub use self::text_lines::Decimals;
 pub use self::typed::TypedWriter;
 use crate::error::Error;
 use crate::stamp::Stamps;

@@ -1,11 +1,80 @@
-//! Files that appear whole or not at all.
+//! The one door by which files are written, whole or not at all: a temporary file beside, of a name of its own, that takes the
+//! file's place.
 
-use std::fs::File;
+use std::collections::BTreeSet;
+use std::ffi::OsString;
+use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use super::beside::Beside;
+use tempfile::{Builder, TempPath};
+
 use crate::error::Error;
+
+/// Bytes of a file's name that its temporary file repeats: with what is added it stays below the 255 of a name.
+const REPEATED: usize = 200;
+
+/// The temporary files that exist now, so that an interrupted program can remove them.
+static BEGUN: Mutex<Begun> = Mutex::new(Begun { files: BTreeSet::new(), is_closed: false });
+
+struct Begun {
+    files: BTreeSet<PathBuf>,
+    /// Whether the program ends: no file is begun or finished any more.
+    is_closed: bool,
+}
+
+/// A temporary file beside the file whose place it takes in the end. Dropped before, it leaves nothing.
+///
+/// It is created new, never through a link and never over a file that is there: two processes that write one file make two
+/// temporary files, and the last one that takes the place is the whole file.
+pub(super) struct Beside {
+    file: PathBuf,
+    temporary: Option<TempPath>,
+}
+
+impl Beside {
+    /// Creates the temporary file, to be written.
+    pub fn create(file: &Path) -> io::Result<(Self, File)> {
+        if fs::metadata(file).is_ok_and(|metadata| !metadata.is_file()) {
+            return Err(io::Error::other("found something that is no regular file, expected a file or a free name"));
+        }
+        let name = file.file_name().ok_or_else(|| io::Error::other("found no name of a file, expected one"))?;
+        let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        let prefix = prefix(name.to_string_lossy().as_ref());
+        let mut begun = begun();
+        begun.check()?;
+        let mut builder = Builder::new();
+        builder.prefix(&prefix).suffix(".tmp").rand_bytes(10);
+        readable_as_any_file(&mut builder);
+        let (output, temporary) = builder.tempfile_in(folder)?.into_parts();
+        begun.files.insert(temporary.to_path_buf());
+        Ok((Self { file: file.to_owned(), temporary: Some(temporary) }, output))
+    }
+
+    /// Puts the temporary file in the file's place.
+    pub fn take_place(mut self) -> io::Result<()> {
+        let Some(temporary) = self.temporary.take() else { return Ok(()) };
+        let mut begun = begun();
+        begun.check()?;
+        begun.files.remove(temporary.as_ref() as &Path);
+        temporary.persist(&self.file).map_err(|failed| failed.error)
+    }
+}
+
+impl Drop for Beside {
+    fn drop(&mut self) {
+        if let Some(temporary) = self.temporary.take() {
+            begun().files.remove(temporary.as_ref() as &Path);
+        }
+    }
+}
+
+impl Begun {
+    fn check(&self) -> io::Result<()> {
+        if self.is_closed { Err(io::Error::other("the program is being ended")) } else { Ok(()) }
+    }
+}
 
 /// Writes `bytes` beside `file`, sees them to the disk, then renames: whoever looks sees the old file or the new one, never a
 /// part, after a power cut too.
@@ -40,3 +109,35 @@ fn write_beside(file: &Path, write: impl FnOnce(File) -> io::Result<()>) -> Resu
     });
     written.map_err(|error| Error::writing(file, error))
 }
+
+/// Removes all files in the making, and lets none be begun or finished from now on: for a program that is interrupted.
+pub fn abandon_files() {
+    let mut begun = begun();
+    begun.is_closed = true;
+    for temporary in std::mem::take(&mut begun.files) {
+        // Best effort: the program ends.
+        let _ = fs::remove_file(temporary);
+    }
+}
+
+fn begun() -> MutexGuard<'static, Begun> {
+    // The set is whole whatever a thread that held it did.
+    BEGUN.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// The beginning of the name of a temporary file.
+fn prefix(name: &str) -> OsString {
+    let end = (0..=REPEATED.min(name.len())).rev().find(|end| name.is_char_boundary(*end)).unwrap_or(0);
+    format!("{}.", &name[..end]).into()
+}
+
+/// As any new file, the temporary one is what the user's mask allows; the crate's own rule is the owner alone.
+#[cfg(unix)]
+fn readable_as_any_file(builder: &mut Builder) {
+    use std::os::unix::fs::PermissionsExt;
+    builder.permissions(fs::Permissions::from_mode(0o666));
+}
+
+/// Other systems give a new file the rights of its folder.
+#[cfg(not(unix))]
+fn readable_as_any_file(_: &mut Builder) {}

@@ -5,13 +5,9 @@
     reason = "what is not inlined into the function with the wide vectors is compiled for the narrow ones"
 )]
 
-mod decimal;
-mod digits;
-
 use pulp::{Arch, Simd, WithSimd};
 
-pub use self::decimal::Decimals;
-use self::decimal::{Digits, ROOM};
+use super::decimal::{self, Decimals, Digits, ROOM};
 
 /// Rows that are turned into text together: some 250 KB.
 pub(super) const ROWS: usize = 4096;
@@ -38,8 +34,8 @@ impl WithSimd for Fill<'_> {
         let Self { text, decimals, columns } = self;
         let mut digits: Vec<Digits> = decimals.iter().copied().map(Digits::new).collect();
         let mut start = text.len();
-        for end in (1..=columns[0].len()).rev().step_by(digits::ROWS) {
-            let rows = end.saturating_sub(digits::ROWS)..end;
+        for end in (1..=columns[0].len()).rev().step_by(decimal::ROWS) {
+            let rows = end.saturating_sub(decimal::ROWS)..end;
             for (digits, column) in digits.iter_mut().zip(columns) {
                 digits.take(&column[rows.clone()]);
             }

@@ -13,7 +13,7 @@ use parquet::file::properties::{EnabledStatistics, WriterProperties};
 use parquet::file::writer::{SerializedFileWriter, SerializedRowGroupWriter};
 use parquet::schema::types::{ColumnPath, Type};
 
-use super::beside::Beside;
+use super::file::Beside;
 use crate::binary::{CHECKSUMS, Cell, Checksums, Kind, TypedColumn};
 use crate::error::Error;
 
