@@ -10,7 +10,7 @@ use std::time::Duration;
 #[cfg(feature = "serve")]
 use centrical_live::{Running, Server, Watched};
 use centrical_report::{AlarmKind, alarm_text, frozen_text, write_history_plot};
-use centrical_session::{self as session, Error, LiveRequest, Session, WatchEnd, WatchEvent, WatchRequest, watch};
+use centrical_session::{self as session, Error, Session, WatchEnd, WatchEvent, WatchRequest, watch};
 use pyo3::IntoPyObjectExt;
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
@@ -79,7 +79,7 @@ impl Watcher {
             quiet: time("quiet", quiet)?,
             frozen: time("frozen", frozen)?,
             once,
-            live: live_targets.map(|targets| LiveRequest { targets }),
+            live: live_targets,
         };
         let page = page.map(|page| page.begin(&request.out)).transpose().map_err(|error| exception(py, &error))?;
         let (sender, events) = channel();

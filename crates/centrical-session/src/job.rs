@@ -41,4 +41,4 @@ pub use self::series::{SeriesRequest, calibrate_series};
 pub use self::settings_schema::{SettingsForm, settings_schema};
 pub use self::simulate::simulate_session;
 pub use self::tumble::{Tumble, TumbleRequest, tumble};
-pub use self::watch::{LiveRequest, Watch, WatchEnd, WatchEvent, WatchProgress, WatchRequest, watch};
+pub use self::watch::{Watch, WatchEnd, WatchEvent, WatchProgress, WatchRequest, watch};

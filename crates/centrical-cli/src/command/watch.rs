@@ -8,9 +8,9 @@ use std::sync::atomic::Ordering;
 
 #[cfg(feature = "serve")]
 use centrical_live::Watched;
-use centrical_session::{Error, Session, watch};
 #[cfg(feature = "serve")]
-use centrical_session::{LiveRequest, WatchEnd};
+use centrical_session::WatchEnd;
+use centrical_session::{Error, Session, watch};
 
 pub use self::arguments::Arguments;
 use self::events::{say_end, say_event};
@@ -30,10 +30,10 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     #[cfg(feature = "serve")]
     let mut server = arguments.serving.bind()?;
     #[cfg(feature = "serve")]
-    let live = server.as_ref().map(|_| LiveRequest { targets: arguments.target.clone() });
+    let is_shown = server.is_some();
     #[cfg(not(feature = "serve"))]
-    let live = None;
-    let request = arguments.request(live);
+    let is_shown = false;
+    let request = arguments.request(is_shown);
     let alarm = Alarm::new(arguments.on_alarm.as_deref(), &session.file);
     #[cfg(feature = "serve")]
     let mut url = None;

@@ -8,7 +8,7 @@ use super::result::Program;
 pub(crate) const SERIES_SCHEMA: &str = "centrical-series/1";
 
 /// How a series ended.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize)]
 pub struct SeriesSummary {
     /// `centrical-series/1`.
     pub schema: &'static str,
@@ -41,16 +41,6 @@ pub struct FailedSession {
 impl SeriesSummary {
     /// A summary before the first session is done.
     pub(crate) fn of(sessions: usize) -> Self {
-        let program = Program::this();
-        Self {
-            schema: SERIES_SCHEMA,
-            program,
-            sessions,
-            known: 0,
-            acceptable: 0,
-            not_acceptable: 0,
-            failed: 0,
-            failures: Vec::new(),
-        }
+        Self { schema: SERIES_SCHEMA, program: Program::this(), sessions, ..Self::default() }
     }
 }

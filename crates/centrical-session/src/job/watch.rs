@@ -13,7 +13,7 @@ use std::sync::atomic::AtomicBool;
 use centrical_table::{claim_folder, refuse_inputs};
 
 pub use self::arrivals::Watch;
-pub use self::board::{LiveRequest, WatchProgress};
+pub use self::board::WatchProgress;
 pub use self::request::{WatchEnd, WatchEvent, WatchRequest};
 use crate::error::Error;
 use crate::experiment::Session;

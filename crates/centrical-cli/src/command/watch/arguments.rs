@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::time::Duration;
 
-use centrical_session::{LiveRequest, PlateauName, WatchRequest};
+use centrical_session::{PlateauName, WatchRequest};
 
 use crate::given::{probability, seconds, target};
 #[cfg(feature = "serve")]
@@ -55,8 +55,8 @@ pub struct Arguments {
 }
 
 impl Arguments {
-    /// How the session is watched.
-    pub fn request(&self, live: Option<LiveRequest>) -> WatchRequest {
+    /// How the session is watched, and whether the watch is shown.
+    pub fn request(&self, is_shown: bool) -> WatchRequest {
         WatchRequest {
             out: self.out.clone(),
             false_alarm: self.false_alarm,
@@ -67,7 +67,7 @@ impl Arguments {
             quiet: self.quiet,
             frozen: self.frozen,
             once: self.once,
-            live,
+            live: is_shown.then(|| self.target.clone()),
         }
     }
 }

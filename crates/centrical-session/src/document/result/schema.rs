@@ -88,7 +88,7 @@ pub struct CalibrationResult {
 }
 
 /// The program and its version.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct Program {
     /// `centrical`.
     pub name: String,

@@ -18,7 +18,7 @@ use crate::settings::{from_json, read_result};
 pub(crate) const LIVE_SCHEMA: &str = "centrical-live/1";
 
 /// What a watch sees at this moment. Times are seconds since 1970, UTC.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct LiveReport {
     /// `centrical-live/1`.
     pub schema: String,
@@ -76,10 +76,11 @@ pub struct LiveReport {
 }
 
 /// What a watch does.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum LiveStatus {
     /// It looks into the folder again and again.
+    #[default]
     Following,
     /// It was stopped; the same command goes on.
     Stopped,

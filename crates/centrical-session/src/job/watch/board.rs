@@ -69,13 +69,6 @@ fn largest(model: &MeasurementModel, progress: &Progress, group: Group) -> (usiz
     uncertainties.fold((0, None), |(count, most), u| (count + 1, Some(u.max(most.unwrap_or(0.0)))))
 }
 
-/// How a watch is shown.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct LiveRequest {
-    /// Wanted standard uncertainties: group, and value in its customary unit.
-    pub targets: Vec<(String, f64)>,
-}
-
 /// Lost combinations that are written out.
 const MOST_LOST: usize = 12;
 
@@ -83,7 +76,7 @@ const MOST_LOST: usize = 12;
 #[derive(Debug)]
 pub struct Board<'a> {
     session: &'a Session,
-    request: &'a LiveRequest,
+    targets: &'a [(String, f64)],
     file: PathBuf,
     frozen_after: Duration,
     report: LiveReport,
@@ -94,10 +87,10 @@ pub struct Board<'a> {
 }
 
 impl<'a> Board<'a> {
-    /// Before the first look. `file` is where it is written.
+    /// Before the first look, for these target standard uncertainties. `file` is where it is written.
     pub fn new(
         session: &'a Session,
-        request: &'a LiveRequest,
+        targets: &'a [(String, f64)],
         file: PathBuf,
         interval: Duration,
         frozen_after: Duration,
@@ -107,30 +100,13 @@ impl<'a> Board<'a> {
             title: session.title.clone(),
             unit_model: session.unit_model.clone(),
             unit_serial: session.unit_serial.clone(),
-            status: LiveStatus::Following,
-            note: None,
-            awaited: None,
-            written: 0.0,
             interval: interval.as_secs_f64(),
-            arrived: 0,
             plateaus: session.experiment.set_points.len(),
             mounting: 1,
             mountings: session.mountings.len(),
-            ends: None,
-            rank: 0,
-            unknowns: 0,
-            last: None,
-            alarms: Vec::new(),
-            groups: Vec::new(),
-            lost: Vec::new(),
-            next: None,
-            best: Vec::new(),
-            speeds: Vec::new(),
-            record: None,
-            rivals: Vec::new(),
-            acceptable: None,
+            ..LiveReport::default()
         };
-        Self { session, request, file, frozen_after, report, pace: None, tested: None }
+        Self { session, targets, file, frozen_after, report, pace: None, tested: None }
     }
 
     /// Takes up what is known after the last plateau of a look.
@@ -150,7 +126,7 @@ impl<'a> Board<'a> {
         self.report.alarms = progress.plateaus.iter().filter(|plateau| plateau.alarm).map(plateau).collect();
         self.report.rank = progress.now.rank;
         self.report.unknowns = progress.model.parameters().len();
-        self.report.groups = progress.groups(&self.request.targets);
+        self.report.groups = progress.groups(self.targets);
         self.report.next = progress.next.as_ref().map(|(next, _)| PlateauLabel::of(session, *next));
         let benefit = |gain: &centrical::plan::Benefit| LiveBenefit {
             plateau: PlateauLabel::of(session, gain.set_point),

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use centrical::MeasurementModel;
 
-use super::board::{LiveRequest, WatchProgress};
+use super::board::WatchProgress;
 use crate::document::CalibrationResult;
 use crate::error::Error;
 use crate::experiment::PlateauName;
@@ -31,8 +31,8 @@ pub struct WatchRequest {
     pub frozen: Duration,
     /// Whether one look is enough.
     pub once: bool,
-    /// How the watch is shown in `watch-live.json`, if it is.
-    pub live: Option<LiveRequest>,
+    /// If the watch is shown in `watch-live.json`, the target standard uncertainties beside it: group, and value in its customary unit.
+    pub live: Option<Vec<(String, f64)>>,
 }
 
 impl WatchRequest {
