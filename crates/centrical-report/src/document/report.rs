@@ -1,7 +1,7 @@
 //! The report of a calibration: verdict, session, parameters, budget, figures.
 
 use centrical_session::{
-    CalibrationResult, ParameterBudget, ParameterEstimate, Redundancy, UnitHistoryReport, ValiditySummary, customary,
+    CalibrationResult, ParameterBudget, ParameterEstimate, UnitHistoryReport, ValiditySummary, customary,
 };
 
 use super::axes::axes;
@@ -87,11 +87,11 @@ fn is_of_first_layer(figure: &Figure) -> bool {
 fn verdicts(result: &CalibrationResult, unit: Option<&UnitStatement>, language: Language) -> [Section; 2] {
     let messages = language.messages();
     let objections = result.objections();
-    let good = match result.redundancy() {
-        Redundancy::Everywhere => messages.verdict_good.to_owned(),
-        Redundancy::ButFor(parameters) => (messages.words.verdict_partly_checked)(&parameters.join(", ")),
-        Redundancy::Nowhere => messages.verdict_unchecked.to_owned(),
-    };
+    let not_checked = (messages.words.not_checked)(result.redundancy());
+    let good = not_checked.map_or_else(
+        || messages.verdict_good.to_owned(),
+        |not_checked| format!("{} {not_checked}", messages.verdict_as_stated),
+    );
     let mut blocks = if objections.is_empty() {
         vec![Block::heading(messages.acceptable, 4), Block::Paragraph(good)]
     } else {

@@ -71,7 +71,8 @@ fn presupposed(result: &CalibrationResult, language: Language) -> String {
     let messages = language.messages();
     let presupposed = if result.model.has_arm() { messages.presupposed } else { messages.presupposed_of_rests };
     let size = |size: f64| micro_g(size, language);
-    let mut sentences = vec![presupposed.to_owned()];
+    let mut sentences: Vec<String> = (messages.words.not_checked)(result.redundancy()).into_iter().collect();
+    sentences.push(presupposed.to_owned());
     if let Some(between) = &result.between_rests {
         sentences.push((messages.words.between_rests)(&size(between.scatter), &size(between.drift)));
     }

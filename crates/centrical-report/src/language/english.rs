@@ -11,8 +11,8 @@ pub(crate) const ENGLISH: Messages = Messages {
     not_acceptable: "Calibration not acceptable",
     verdict_good: "The result can be used as it stands: the fit converged, the residuals agree with the stated \
         uncertainties, and every parameter of the instrument is determined.",
-    verdict_unchecked: "The result can be used as far as its statements hold: the fit converged, and every parameter of \
-        the instrument is determined. But no reading is redundant: nothing checks the stated uncertainties.",
+    verdict_as_stated: "The result can be used as far as its statements hold: the fit converged, and every parameter of \
+        the instrument is determined.",
     verdict_bad: "The result must not be used as it stands:",
     serial: "Serial number",
     not_given: "not given",
@@ -286,7 +286,7 @@ pub(crate) const ENGLISH: Messages = Messages {
     mark_place: "place for mark or seal",
     words: Words {
         axes: words::axes,
-        verdict_partly_checked: words::verdict_partly_checked,
+        not_checked: words::not_checked,
         known_attitudes: words::known_attitudes,
         between_rests: words::between_rests,
         turning: words::turning,

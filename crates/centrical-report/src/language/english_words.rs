@@ -3,7 +3,7 @@
 use centrical::{
     Course, Difference, Extension, Extra, Group, Law, PairRelation, ReferencePoint, Rival, Source, Termination,
 };
-use centrical_session::{AxesName, Follows, Method, NextAttitudeSummary};
+use centrical_session::{AxesName, Follows, Method, NextAttitudeSummary, Redundancy};
 
 use crate::number::counted;
 
@@ -172,9 +172,7 @@ pub(super) fn rival(rival: Rival) -> &'static str {
                 "scale of the rests of [[tumble]] that differs from the arm's: another temperature or gravity"
             }
             Extension::RestsUnit => "another unit, or axes in another order, in the rests of [[tumble]]",
-            Extension::AttitudesTilt => {
-                "stated attitudes that are off by more than is stated of them, alike in each rest"
-            }
+            Extension::AttitudesTilt => "stated attitudes with errors above what is stated, equal in each rest",
             Extension::RestsTilt => "attitudes of rests that are off by more than is stated of them",
             Extension::SpinTurn => "turn of the unit between rest and spinning",
             Extension::Disturbance(Course::Spinning) => {
@@ -219,11 +217,14 @@ pub(super) fn turning(arcs: usize, share: &str, [rate, radius, acceleration]: [&
 }
 
 /// How many attitudes of all rests are known, and to what standard uncertainty at most.
-pub(super) fn verdict_partly_checked(parameters: &str) -> String {
-    format!(
-        "The result can be used as far as its statements hold: the fit converged, and every parameter of the instrument is \
-         determined. But nothing checks {parameters}: the readings that they rest on are not redundant."
-    )
+pub(super) fn not_checked(redundancy: Redundancy) -> Option<String> {
+    match redundancy {
+        Redundancy::Everywhere => None,
+        Redundancy::ButFor(parameters) => {
+            Some(format!("Nothing checks {}: the readings that they rest on are not redundant.", parameters.join(", ")))
+        }
+        Redundancy::Nowhere => Some("No reading is redundant: nothing checks the stated uncertainties.".to_owned()),
+    }
 }
 
 pub(super) fn known_attitudes(known: usize, all: usize, uncertainty: &str) -> String {

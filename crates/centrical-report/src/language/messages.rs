@@ -3,7 +3,7 @@
 //! One field a message and one function a set of words, so that a language that lacks one does not compile.
 
 use centrical::{Group, PairRelation, ReferencePoint, Rival, Source, Termination};
-use centrical_session::{AxesName, Follows, Method, NextAttitudeSummary, SpeedFinding, SpeedsSummary};
+use centrical_session::{AxesName, Follows, Method, NextAttitudeSummary, Redundancy, SpeedFinding, SpeedsSummary};
 
 /// What the documents say, in one language.
 #[allow(missing_docs)]
@@ -12,7 +12,7 @@ pub(crate) struct Messages {
     pub acceptable: &'static str,
     pub not_acceptable: &'static str,
     pub verdict_good: &'static str,
-    pub verdict_unchecked: &'static str,
+    pub verdict_as_stated: &'static str,
     pub verdict_bad: &'static str,
     pub serial: &'static str,
     pub not_given: &'static str,
@@ -305,8 +305,8 @@ pub(crate) struct Messages {
 /// Words for what is one of several, in one language; each function names all of them.
 pub(crate) struct Words {
     pub axes: fn(&AxesName) -> String,
-    /// The verdict on a result some of whose parameters nothing checks: these.
-    pub verdict_partly_checked: fn(&str) -> String,
+    /// What no redundant reading checks.
+    pub not_checked: fn(Redundancy) -> Option<String>,
     /// How many attitudes of all rests are known, and to what standard uncertainty at most.
     pub known_attitudes: fn(usize, usize, &str) -> String,
     /// The scatter from rest to rest and the drift of the biases that the uncertainties include.

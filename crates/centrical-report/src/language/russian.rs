@@ -11,8 +11,8 @@ pub(crate) const RUSSIAN: Messages = Messages {
     not_acceptable: "Калибровка не принята",
     verdict_good: "Результатом можно пользоваться: оценивание сошлось, невязки согласуются с заявленными \
         неопределённостями, все параметры прибора определены.",
-    verdict_unchecked: "Результатом можно пользоваться, насколько верны заявленные сведения: оценивание сошлось, все параметры \
-        прибора определены. Но избыточных показаний нет: заявленные неопределённости ничем не проверены.",
+    verdict_as_stated: "Результатом можно пользоваться, насколько верны заявленные сведения: оценивание сошлось, все параметры \
+        прибора определены.",
     verdict_bad: "Результатом нельзя пользоваться:",
     serial: "Заводской №",
     not_given: "не указан",
@@ -283,7 +283,7 @@ pub(crate) const RUSSIAN: Messages = Messages {
     mark_place: "место печати",
     words: Words {
         axes: words::axes,
-        verdict_partly_checked: words::verdict_partly_checked,
+        not_checked: words::not_checked,
         known_attitudes: words::known_attitudes,
         between_rests: words::between_rests,
         turning: words::turning,

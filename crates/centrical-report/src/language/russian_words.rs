@@ -3,7 +3,7 @@
 use centrical::{
     Course, Difference, Extension, Extra, Group, Law, PairRelation, ReferencePoint, Rival, Source, Termination,
 };
-use centrical_session::{AxesName, Follows, Method, NextAttitudeSummary};
+use centrical_session::{AxesName, Follows, Method, NextAttitudeSummary, Redundancy};
 
 pub(super) fn axes(name: &AxesName) -> String {
     match name {
@@ -170,9 +170,7 @@ pub(super) fn rival(rival: Rival) -> &'static str {
                 "масштаб в положениях покоя [[tumble]], отличный от масштаба на центрифуге: другая температура или сила тяжести"
             }
             Extension::RestsUnit => "другой прибор или другой порядок осей в положениях покоя [[tumble]]",
-            Extension::AttitudesTilt => {
-                "заданные ориентации, ошибки которых больше заявленных и одинаковы в каждом покое"
-            }
+            Extension::AttitudesTilt => "заданные ориентации с ошибками больше заявленных, одинаковыми в каждом покое",
             Extension::RestsTilt => "ориентации в покое, ошибки которых больше заявленных",
             Extension::SpinTurn => "поворот прибора между покоем и вращением",
             Extension::Disturbance(Course::Spinning) => {
@@ -242,11 +240,17 @@ pub(super) fn turning(arcs: usize, share: &str, [rate, radius, acceleration]: [&
 }
 
 /// How many attitudes of all rests are known, and to what standard uncertainty at most.
-pub(super) fn verdict_partly_checked(parameters: &str) -> String {
-    format!(
-        "Результатом можно пользоваться, насколько верны заявленные сведения: оценивание сошлось, все параметры прибора \
-         определены. Но {parameters} ничем не проверены: показания, по которым они найдены, не избыточны."
-    )
+pub(super) fn not_checked(redundancy: Redundancy) -> Option<String> {
+    match redundancy {
+        Redundancy::Everywhere => None,
+        Redundancy::ButFor(parameters) => Some(format!(
+            "{} ничем не проверены: показания, по которым они найдены, не избыточны.",
+            parameters.join(", ")
+        )),
+        Redundancy::Nowhere => {
+            Some("Избыточных показаний нет: заявленные неопределённости ничем не проверены.".to_owned())
+        }
+    }
 }
 
 pub(super) fn known_attitudes(known: usize, all: usize, uncertainty: &str) -> String {

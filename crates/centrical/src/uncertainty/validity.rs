@@ -19,10 +19,10 @@ use crate::statistics::chi_squared_tail;
 /// A share of a reading below this is rounding: the reading is not redundant, nothing checks it.
 const REDUNDANT: f64 = 1e-8;
 
-/// Part of a reading that is redundant, below which no other checks it: its residual shows less than a tenth of its error.
+/// Redundant part of a reading, below which no other reading checks it: its residual shows less than a tenth of its error.
 const CHECKED: f64 = 0.01;
 
-/// Part of its variance that a parameter has from readings which no other checks, above which it counts as unchecked.
+/// Part of the variance of a parameter that comes from such readings, above which nothing checks the parameter.
 const MOSTLY: f64 = 0.5;
 
 /// The checks of a fit.
@@ -34,7 +34,7 @@ pub struct Validity {
     pub plateaus: Vec<PlateauCheck>,
     /// Each mounting that has observations, by its index, and how well the others predict it.
     pub mountings: Vec<(usize, LeftOutPrediction)>,
-    /// Parameters of the instrument that rest on readings which no other checks: errors of these readings move them and leave no residual.
+    /// Parameters of the instrument that rest on readings which no other reading checks: errors of these readings move them and leave no residual.
     pub unchecked: Vec<usize>,
 }
 
@@ -103,7 +103,7 @@ impl Calibration<'_> {
         })
     }
 
-    /// Parameters of the instrument with more than half of their variance from readings that no other checks, where any does.
+    /// Parameters of the instrument with more than half of their variance from readings that no other reading checks, where any does.
     fn unchecked(&self, blocks: &Blocks) -> Result<Vec<usize>, FitError> {
         let (fit, parameters) = (self.fit(), self.data().model().parameters());
         let mut variances = vec![0.0; parameters.len()];
@@ -206,7 +206,7 @@ impl Blocks<'_> {
         PlateauCheck { set_point, standardised, leverage, prediction: self.predict(&[n]) }
     }
 
-    /// `Q_b^T v` of the directions `v` of an observation's readings in which no other checks them.
+    /// `Q_b^T v` of the directions `v` of an observation's readings in which no other reading checks them.
     fn followed_alone(&self, n: usize) -> DMatrix<f64> {
         let rows = self.basis.rows(3 * n, 3);
         let eigen = SymmetricEigen::new(DMatrix::identity(3, 3) - rows * rows.transpose());

@@ -88,7 +88,7 @@ pub struct ValiditySummary {
     /// Those shown at a family-wise error of 5 % (Holm), the one that explains most first.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub rivals: Vec<RivalSummary>,
-    /// Parameters of the instrument that rest on readings which no other checks.
+    /// Parameters of the instrument that rest on readings which no other reading checks.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub unchecked: Vec<String>,
 }

@@ -36,13 +36,13 @@ pub fn add_results(
         }
     }
     Store::refuse_inputs(folder, &files)?;
-    let store = Store::create(folder)?;
     let mut added = Added::default();
     for batch in files.chunks(BATCH) {
         // To parse a result takes longer than all else; errors are those of one thread, the first file first.
         let read: Vec<Result<_, Error>> = batch.par_iter().map(|file| read_row(file, rows_only)).collect();
         let rows: Vec<_> = read.into_iter().collect::<Result<_, _>>()?;
-        let of_batch = store.add_with_results(rows, progress)?;
+        // A store is made when there is something to add.
+        let of_batch = Store::create(folder)?.add_with_results(rows, progress)?;
         added = Added { new: added.new + of_batch.new, known: added.known + of_batch.known };
         advance(progress, batch.len())?;
     }
