@@ -302,18 +302,14 @@ impl<'de> Deserialize<'de> for Date {
     }
 }
 
-/// A text that is not a day.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
-#[error("expected a day such as 2026-10-05")]
-pub struct NotADay;
-
 impl FromStr for Date {
-    type Err = NotADay;
+    type Err = String;
 
     /// A day of ISO 8601, or the day of a time there.
-    fn from_str(text: &str) -> Result<Self, NotADay> {
-        let stamp = text.trim().parse::<toml::value::Datetime>().map_err(|_| NotADay)?;
-        Self::of(toml::value::Datetime { time: None, ..stamp }).ok_or(NotADay)
+    fn from_str(text: &str) -> Result<Self, String> {
+        let stamp = text.trim().parse::<toml::value::Datetime>().ok();
+        let day = stamp.and_then(|stamp| Self::of(toml::value::Datetime { time: None, ..stamp }));
+        day.ok_or_else(|| "expected a day such as 2026-10-05".to_owned())
     }
 }
 
