@@ -309,8 +309,9 @@ pub enum NoErrorModel {
     },
     /// The turns do not show the attitude of the case.
     #[error(
-        "found {positions} positions on an arm whose turns delta_1, delta_2, delta_3 are all determined, expected two or more, since the \
-         error of one seat cannot be separated from the attitude of the case, or rests in known attitudes"
+        "found {positions} positions on an arm whose turns delta_1, delta_2, delta_3 are all determined, and no rests in known \
+         attitudes; expected two such positions, since the error of one seat cannot be separated from the attitude of the case, or \
+         attitudes of rests (--attitudes of tumble, attitudes under [[tumble]])"
     )]
     Case {
         /// Positions that determine all three turns.

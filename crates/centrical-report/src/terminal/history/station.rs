@@ -52,6 +52,11 @@ fn verdict(screen: &mut Screen, report: &StationHistoryReport) {
         );
         screen.marked(Emphasis::Warning, "NOT TESTED", &words);
     }
+    if report.parameters.is_empty() {
+        let words = "the calibrations have no parameters of a machine in common: rests alone have none";
+        screen.marked(Emphasis::Warning, "NOT TESTED", words);
+        return;
+    }
     let untested = untested - confounded;
     if untested > 0 || report.is_steady.is_none() && confounded == 0 {
         let words = match report.is_steady {
