@@ -222,6 +222,10 @@ impl ErrorModel {
         for (t, (term, c)) in self.terms.iter().zip(coefficients).enumerate() {
             let value = term.monomial.value((*f).into());
             each(t, value);
+            // Of the terms of a rival the columns alone are asked for.
+            if *c == 0.0 {
+                continue;
+            }
             at.reading[term.axis] += c * value;
             for j in 0..3 {
                 if let Some((factor, lower)) = term.monomial.derivative(j) {
