@@ -93,7 +93,7 @@ def test_the_example_runs_as_a_notebook(repository):
     shown = [output for cell in notebook.cells for output in cell.get("outputs", ())]
     assert not [output for output in shown if output.output_type == "error"]
     pages = [output.data["text/html"] for output in shown if "text/html" in output.get("data", {})]
-    assert any("<svg" in page and "G1_11" in page for page in pages)
+    assert any("<svg" in page and "ERROR MODEL" in page for page in pages)
     assert (repository / "certificates/certificate.pdf").read_bytes().startswith(b"%PDF")
 
 

@@ -51,7 +51,7 @@ def test_unknown_parameter_names_its_neighbours(result):
 
 def test_verdict_and_parts(result):
     assert result.acceptable and result.objections == ()
-    assert result.rests_on[0].name == "arm-turn-load"
+    assert result.rests_on[0].name == "cubic-products"
     assert result.observability.rank == 49 and result.observability.lost == ()
     assert result.budget.sources
     assert result.document.session.unit_model == "TA-200"
