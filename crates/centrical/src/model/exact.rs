@@ -192,6 +192,10 @@ impl MeasurementModel {
             speed += match self.share(set_point, effect) {
                 Share::Turn(turn) if effect.is_elastic() => partials.turn * turn * (2.0 * size),
                 Share::Arm(displacement) if effect.is_elastic() => partials.arm * displacement * (2.0 * size),
+                // The Earth's rotation acts with `Omega`, an error of the speeds with its square.
+                Share::Rate(rate) if matches!(effect, Effect::EarthRate | Effect::Latitude) => {
+                    partials.rate * (rate * size)
+                }
                 Share::Rate(rate) => partials.rate * (2.0 * rate * size),
                 Share::Reading(_) => self.reading_by_log_speed(set_point, effect) * size,
                 Share::Tilt(_)

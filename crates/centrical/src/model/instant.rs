@@ -49,27 +49,34 @@ pub(crate) struct MountedUnit {
     pub disturbance: Vector3<f64>,
 }
 
+impl ArmMotion {
+    /// The arm at rest at the angle zero.
+    pub(crate) const REST: Self = Self { angle: 0.0, speed: 0.0, acceleration: 0.0 };
+}
+
 impl MeasurementModel {
     /// Reading `f'` [m/s^2] of the unit in mounting `mounting` at the unknowns `x`, at one instant of the arm's motion.
     pub fn reading_at(&self, mounting: usize, x: &[f64], motion: &ArmMotion) -> Vector3<f64> {
-        let unit = self.mounted_unit(mounting, x, motion.speed);
+        let unit = self.mounted_unit(mounting, x, motion);
         let f = unit.specific_force(motion);
         self.error_model.reading(self.parameters.coefficients(x), &f) + unit.disturbance
     }
 
-    /// The unit on the arm in mounting `mounting` as `omega` deforms it.
-    pub(crate) fn mounted_unit(&self, mounting: usize, x: &[f64], omega: f64) -> MountedUnit {
-        let set_point = SetPoint::spinning(mounting, omega);
+    /// The unit on the arm in mounting `mounting` as the speed of `motion` deforms it, and at rest the angle tilts it.
+    pub(crate) fn mounted_unit(&self, mounting: usize, x: &[f64], motion: &ArmMotion) -> MountedUnit {
+        let set_point = SetPoint { angle: motion.angle, ..SetPoint::spinning(mounting, motion.speed) };
         let geometry = self.geometry(&set_point, x);
         let scales = |effect: Effect| match effect {
             Effect::SpeedScale => true,
-            Effect::OneSpeed { first } => self.experiment.set_points[first].has_speed(omega),
+            Effect::OneSpeed { first } => self.experiment.set_points[first].has_speed(motion.speed),
             _ => false,
         };
         let acting = self.acting(x).filter(|(effect, _)| scales(*effect));
         let square_scale = 1.0 + acting.map(|(_, size)| size).sum::<f64>();
+        let vertical = self.acting(x).filter(|(effect, _)| *effect == Effect::EarthRate).map(|(_, size)| size).sum();
+        let earth_rate_x = earth_rate(&self.experiment.site) + Vector3::new(0.0, 0.0, vertical);
         let disturbance = self.disturbance(&set_point, x);
-        MountedUnit { disturbance, ..MountedUnit::new(&geometry, &earth_rate(&self.experiment.site), square_scale) }
+        MountedUnit { disturbance, ..MountedUnit::new(&geometry, &earth_rate_x, square_scale) }
     }
 
     /// Whether anything but the rate changes with the speed.

@@ -119,14 +119,14 @@ pub(super) struct Physics<'a> {
 impl<'a> Physics<'a> {
     pub fn new(model: &'a MeasurementModel, truth: &'a [f64], mounting: usize) -> Self {
         let response = Response::new(model.error_model(), model.parameters().coefficients(truth));
-        let rigid = (!model.changes_with_speed()).then(|| model.mounted_unit(mounting, truth, 0.0));
+        let rigid = (!model.changes_with_speed()).then(|| model.mounted_unit(mounting, truth, &ArmMotion::REST));
         Self { model, truth, mounting, response, rigid }
     }
 
     /// Specific force of the unit at rest, and what is added to its readings [m/s^2].
     pub fn at_rest(&self) -> (Vector3<f64>, Vector3<f64>) {
-        let unit = self.model.mounted_unit(self.mounting, self.truth, 0.0);
-        (unit.specific_force(&ArmMotion { angle: 0.0, speed: 0.0, acceleration: 0.0 }), unit.disturbance)
+        let unit = self.model.mounted_unit(self.mounting, self.truth, &ArmMotion::REST);
+        (unit.specific_force(&ArmMotion::REST), unit.disturbance)
     }
 
     #[inline]
@@ -134,7 +134,7 @@ impl<'a> Physics<'a> {
         if let Some(unit) = &self.rigid {
             return self.response.reading(&unit.specific_force(motion));
         }
-        let unit = self.model.mounted_unit(self.mounting, self.truth, motion.speed);
+        let unit = self.model.mounted_unit(self.mounting, self.truth, motion);
         self.response.reading(&unit.specific_force(motion)) + unit.disturbance
     }
 }

@@ -3,7 +3,10 @@ use std::f64::consts::TAU;
 use centrical::ThirdPosition::{AxisOneDown, AxisOneUp};
 use centrical::reduction::Record;
 use centrical::simulate::{Equipment, Machine, Recorder, Simulation, SimulationError, Tachometer};
-use centrical::{ArmMotion, Experiment, Group, MeasurementModel, PairRelation, Parameter, SetPoint, Site, rotation};
+use centrical::{
+    ArmMotion, ErrorModel, Experiment, Extension, Group, MeasurementModel, PairRelation, Parameter, SetPoint, Site,
+    rotation,
+};
 use nalgebra::Vector3;
 
 use crate::common::{Random, everything, experiment, kozlov, truth};
@@ -69,6 +72,29 @@ fn mean_of_a_record_is_the_reading() {
             // Effects on the nominal force know the rate of the Earth along the plumb line: 1e-12 of the reading.
             assert!(error <= 1e-11 * expected.amax() + 1e-11, "{set_point:?}: {error:e} of {:e}", expected.amax());
         }
+    }
+}
+
+/// At rest an instant has the tilt of its angle, and where no latitude is stated the Earth's rotation is that of the unknown.
+#[test]
+fn an_instant_has_tilts_by_angle_and_the_earth_rate() {
+    const STEPS: u8 = 4;
+    let mut without_latitude = experiment(AxisOneUp, PairRelation::Common, &[1.0]);
+    without_latitude.site.latitude = None;
+    let extensions = [Extension::AngleTilt, Extension::EarthRate];
+    let model = MeasurementModel::new(without_latitude, ErrorModel::kozlov_2017(), &extensions);
+    let mut x = vec![0.0; model.parameters().len()];
+    for (name, value) in [("angle_tilt_1[2]", 3e-3), ("angle_tilt_2[2]", -2e-3), ("earth_rate", 5e-5)] {
+        x[model.parameters().find(name).unwrap()] = value;
+    }
+    for s in &model.experiment().set_points {
+        let steps = if s.is_rest() { 1 } else { STEPS };
+        let at = |step: u8| {
+            let angle = s.angle + TAU * f64::from(step) / f64::from(STEPS);
+            model.reading_at(s.mounting, &x, &ArmMotion { angle, speed: s.omega, acceleration: 0.0 })
+        };
+        let mean = (0..steps).map(at).sum::<Vector3<f64>>() / f64::from(steps);
+        assert!((mean - model.reading(s, &x)).amax() < 1e-10, "{s:?}: {mean}");
     }
 }
 
