@@ -19,7 +19,7 @@ use self::model::Model;
 pub use self::statement::NamedTerm;
 use crate::language::Language;
 
-/// The compensation of the result in `file`, for specific forces up to `range` [m/s^2], by default the range of the result.
+/// The compensation of a result as source files, for specific forces up to `range` [m/s^2], by default the range of the result.
 ///
 /// # Errors
 /// [`Error`] where the result lacks a coefficient, or its model is not certain to be invertible over the range.

@@ -45,9 +45,9 @@ pub fn tumble(
     let [first, second, third] = readings;
     let [gravity, uncertainty] = gravity;
     let gravity = Amount::checked(gravity, "gravity", Quantity::gravity)?;
-    let uncertainty = Amount::optional(uncertainty, "gravity", Dimension::Acceleration)?;
+    let uncertainty = Amount::optional(uncertainty, "gravity_uncertainty", Dimension::Acceleration)?;
     if gravity.is_none() && uncertainty.is_some() {
-        return Err(refused("gravity_uncertainty", "expected a gravity that it is of"));
+        return Err(refused("gravity_uncertainty", "found without gravity, expected both"));
     }
     let anywhere = if gravity.is_some() { 0.0 } else { TumbleRequest::GRAVITY_ANYWHERE };
     let (mut files, mut folder) = (Vec::new(), Folder::default());

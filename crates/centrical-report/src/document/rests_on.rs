@@ -71,8 +71,7 @@ fn presupposed(result: &CalibrationResult, language: Language) -> String {
     let messages = language.messages();
     let presupposed = if result.model.has_arm() { messages.presupposed } else { messages.presupposed_of_rests };
     let size = |size: f64| micro_g(size, language);
-    let mut sentences: Vec<String> = (messages.words.not_checked)(result.redundancy()).into_iter().collect();
-    sentences.push(presupposed.to_owned());
+    let mut sentences = vec![presupposed.to_owned()];
     if let Some(between) = &result.between_rests {
         sentences.push((messages.words.between_rests)(&size(between.scatter), &size(between.drift)));
     }
@@ -85,7 +84,7 @@ fn presupposed(result: &CalibrationResult, language: Language) -> String {
     sentences.join(" ")
 }
 
-/// What the stated uncertainties presuppose, in a sentence for each of the worst effects.
+/// What no reading checks, and what the stated uncertainties presuppose, in a sentence for each of the worst effects.
 pub(crate) fn presuppositions(result: &CalibrationResult, language: Language) -> String {
     let messages = language.messages();
     let worst = result.rests_on.iter().take(WORST).map(|effect| rests_on_sentence(effect, language));
@@ -95,7 +94,8 @@ pub(crate) fn presuppositions(result: &CalibrationResult, language: Language) ->
     } else {
         format!(" {}: {}.", messages.rests_on_sentence, worst.join("; "))
     };
-    format!("{}{effects}", presupposed(result, language))
+    let not_checked = (messages.words.not_checked)(result.redundancy()).map(|sentence| sentence + " ");
+    format!("{}{}{effects}", not_checked.unwrap_or_default(), presupposed(result, language))
 }
 
 fn table(result: &CalibrationResult, rows: usize, language: Language) -> Table {

@@ -172,7 +172,9 @@ pub(super) fn rival(rival: Rival) -> &'static str {
                 "scale of the rests of [[tumble]] that differs from the arm's: another temperature or gravity"
             }
             Extension::RestsUnit => "another unit, or axes in another order, in the rests of [[tumble]]",
-            Extension::AttitudesTilt => "stated attitudes with errors above what is stated, equal in each rest",
+            Extension::AttitudesTilt => {
+                "stated attitudes that are off by more than is stated, alike in all rests that share one"
+            }
             Extension::RestsTilt => "attitudes of rests that are off by more than is stated of them",
             Extension::SpinTurn => "turn of the unit between rest and spinning",
             Extension::Disturbance(Course::Spinning) => {
@@ -216,17 +218,16 @@ pub(super) fn turning(arcs: usize, share: &str, [rate, radius, acceleration]: [&
     )
 }
 
-/// How many attitudes of all rests are known, and to what standard uncertainty at most.
+/// What no redundant reading checks.
 pub(super) fn not_checked(redundancy: Redundancy) -> Option<String> {
     match redundancy {
         Redundancy::Everywhere => None,
-        Redundancy::ButFor(parameters) => {
-            Some(format!("Nothing checks {}: the readings that they rest on are not redundant.", parameters.join(", ")))
-        }
+        Redundancy::ButFor(parameters) => Some(format!("No redundant reading checks {}.", parameters.join(", "))),
         Redundancy::Nowhere => Some("No reading is redundant: nothing checks the stated uncertainties.".to_owned()),
     }
 }
 
+/// How many attitudes of all rests are known, and to what standard uncertainty at most.
 pub(super) fn known_attitudes(known: usize, all: usize, uncertainty: &str) -> String {
     match known {
         0 => "The attitudes are not known beforehand.".to_owned(),

@@ -170,7 +170,9 @@ pub(super) fn rival(rival: Rival) -> &'static str {
                 "масштаб в положениях покоя [[tumble]], отличный от масштаба на центрифуге: другая температура или сила тяжести"
             }
             Extension::RestsUnit => "другой прибор или другой порядок осей в положениях покоя [[tumble]]",
-            Extension::AttitudesTilt => "заданные ориентации с ошибками больше заявленных, одинаковыми в каждом покое",
+            Extension::AttitudesTilt => {
+                "заданные ориентации, ошибки которых больше заявленных и одинаковы во всех положениях покоя с этой ориентацией"
+            }
             Extension::RestsTilt => "ориентации в покое, ошибки которых больше заявленных",
             Extension::SpinTurn => "поворот прибора между покоем и вращением",
             Extension::Disturbance(Course::Spinning) => {
@@ -239,20 +241,20 @@ pub(super) fn turning(arcs: usize, share: &str, [rate, radius, acceleration]: [&
     )
 }
 
-/// How many attitudes of all rests are known, and to what standard uncertainty at most.
+/// What no redundant reading checks.
 pub(super) fn not_checked(redundancy: Redundancy) -> Option<String> {
     match redundancy {
         Redundancy::Everywhere => None,
-        Redundancy::ButFor(parameters) => Some(format!(
-            "{} ничем не проверены: показания, по которым они найдены, не избыточны.",
-            parameters.join(", ")
-        )),
+        Redundancy::ButFor(parameters) => {
+            Some(format!("Для {} избыточных показаний нет: проверить найденные значения нечем.", parameters.join(", ")))
+        }
         Redundancy::Nowhere => {
             Some("Избыточных показаний нет: заявленные неопределённости ничем не проверены.".to_owned())
         }
     }
 }
 
+/// How many attitudes of all rests are known, and to what standard uncertainty at most.
 pub(super) fn known_attitudes(known: usize, all: usize, uncertainty: &str) -> String {
     match known {
         0 => "Ориентации заранее не известны.".to_owned(),

@@ -32,8 +32,8 @@ pub fn assessment_text(assessment: &Assessment, coverage: f64, correlations: boo
     }
     screen.gap();
     let used = cleaned.as_ref().map_or(fit, |(after, _)| after);
-    let redundancy = if used.degrees_of_freedom > 0 { Redundancy::Everywhere } else { Redundancy::Nowhere };
-    screen.add(verdict_text(objections, redundancy));
+    let unchecked: Vec<String> = validity.unchecked.iter().map(|j| model.parameters()[*j].name.clone()).collect();
+    screen.add(verdict_text(objections, Redundancy::of(used.degrees_of_freedom, &unchecked)));
     screen
 }
 

@@ -33,7 +33,7 @@ pub fn verdict_text(objections: &[ResultObjection], redundancy: Redundancy) -> S
             Redundancy::Everywhere => "no check raised an objection".to_owned(),
             Redundancy::ButFor(parameters) => {
                 let names = short_list(parameters, NAMED, ", ");
-                format!("but nothing checks {names}: the readings that they rest on are not redundant")
+                format!("but no redundant reading checks {names}")
             }
             Redundancy::Nowhere => "but no reading is redundant: nothing checks the stated uncertainties".to_owned(),
         };

@@ -44,7 +44,7 @@ impl Session {
         file.map(|file| telemetry_of(self.folder.open(file, TELEMETRY)?, &self.columns, extent)).transpose()
     }
 
-    /// Reads the pulses of a mounting, if it has any, which may still be coming.
+    /// Reads the pulses of a mounting, if it has any; with [`Extent::Growing`] more may come.
     ///
     /// # Errors
     /// As [`RecordReader`](crate::RecordReader).

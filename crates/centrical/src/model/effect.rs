@@ -117,7 +117,7 @@ pub enum Effect {
         /// Index of the first set point with that speed.
         first: usize,
     },
-    /// Vertical component of the Earth's rotation, beside that of the stated latitude [rad/s].
+    /// Vertical component of the Earth's rotation, where no latitude is stated [rad/s].
     EarthRate,
     /// Local gravity [m/s^2].
     Gravity,

@@ -222,7 +222,7 @@ impl ErrorModel {
         for (t, (term, c)) in self.terms.iter().zip(coefficients).enumerate() {
             let value = term.monomial.value((*f).into());
             each(t, value);
-            // Of the terms of a rival the columns alone are asked for.
+            // The terms of a rival have columns and no coefficients.
             if *c == 0.0 {
                 continue;
             }

@@ -203,6 +203,17 @@ impl SetPoint {
         self.is_rest() && apart.sin().abs() < SAME_ANGLE && apart.cos() > 0.0
     }
 
+    /// The angles of some rests in their order: of each the index of its first rest, and the angle [rad].
+    pub(crate) fn distinct_angles<'s>(rests: impl Iterator<Item = (usize, &'s Self)>) -> Vec<(usize, f64)> {
+        let mut angles: Vec<(usize, f64)> = Vec::new();
+        for (n, rest) in rests {
+            if !angles.iter().any(|(_, angle)| rest.rests_at(*angle)) {
+                angles.push((n, rest.angle));
+            }
+        }
+        angles
+    }
+
     /// Whether the plateau spins at a speed, whatever the sense, that was set and not measured.
     pub(crate) fn has_speed(&self, omega: f64) -> bool {
         let (own, other) = (self.omega.abs(), omega.abs());
@@ -288,15 +299,11 @@ impl Experiment {
         same.map(|same| (same.iter().map(|(n, _)| *n).min().unwrap_or(0), same.len())).collect()
     }
 
-    /// The angles at which the arm rests, in the order of the session: the index of the first set point at each.
-    pub(crate) fn rest_angles(&self) -> Vec<usize> {
-        let mut firsts: Vec<usize> = Vec::new();
-        for (n, rest) in self.set_points.iter().enumerate().filter(|(_, s)| s.is_rest() && self.is_on_arm(s.mounting)) {
-            if !firsts.iter().any(|first| rest.rests_at(self.set_points[*first].angle)) {
-                firsts.push(n);
-            }
-        }
-        firsts
+    /// The angles at which the arm rests, in the order of the session: of each the index of its first set point, and the angle [rad].
+    pub(crate) fn rest_angles(&self) -> Vec<(usize, f64)> {
+        SetPoint::distinct_angles(
+            self.set_points.iter().enumerate().filter(|(_, s)| s.is_rest() && self.is_on_arm(s.mounting)),
+        )
     }
 
     /// Nominal place `R0` of a plateau, arm axes [m].

@@ -290,36 +290,43 @@ fn of_rests(
 
 /// Two tilts at every angle of rest but the first.
 fn angle_tilts(experiment: &Experiment) -> Vec<Parameter> {
-    let tilt = |axis: usize, (n, first): (usize, usize)| {
-        let name = format!("angle_tilt_{}[{}]", axis + 1, n + 1);
-        effect(name, "rad", Group::AngleTilt, Effect::AngleTilt { axis, first }, 1e-3)
+    let angles = experiment.rest_angles();
+    let tilts = |n: usize, first: usize| {
+        tilts("angle_tilt", &(n + 1).to_string(), Group::AngleTilt, |axis| Effect::AngleTilt { axis, first })
     };
-    let further = experiment.rest_angles().into_iter().enumerate().skip(1);
-    further.flat_map(|angle| [0, 1].map(|axis| tilt(axis, angle))).collect()
+    angles.into_iter().enumerate().skip(1).flat_map(|(n, (first, _))| tilts(n, first)).collect()
 }
 
 /// Two tilts for each rest in a known attitude.
 fn rest_tilts(experiment: &Experiment) -> Vec<Parameter> {
-    let tilt = |axis: usize, position: usize| {
-        let name = format!("rest_tilt_{}[{}]", axis + 1, experiment.positions[position].id);
-        effect(name, "rad", Group::Attitude, Effect::RestTilt { axis, position }, 1e-3)
+    let tilts = |position: usize| {
+        let id = &experiment.positions[position].id;
+        tilts("rest_tilt", id, Group::Attitude, |axis| Effect::RestTilt { axis, position })
     };
-    let positions = experiment.positions.iter().enumerate();
-    let known = positions.filter(|(_, position)| position.attitude_uncertainty.is_some());
-    known.flat_map(|(k, _)| [0, 1].map(|axis| tilt(axis, k))).collect()
+    in_known_attitudes(experiment).into_iter().flat_map(tilts).collect()
 }
 
 /// Two tilts for each known attitude of several rests.
 fn attitude_tilts(experiment: &Experiment) -> Vec<Parameter> {
-    let positions = &experiment.positions;
-    let tilt = |axis: usize, first: usize| {
-        let name = format!("attitude_tilt_{}[{}]", axis + 1, positions[first].id);
-        effect(name, "rad", Group::Attitude, Effect::AttitudeTilt { axis, first }, 1e-3)
+    let (positions, known) = (&experiment.positions, in_known_attitudes(experiment));
+    let share = |k: usize, others: &[usize]| others.iter().any(|&n| positions[n].shares_attitude(&positions[k]));
+    let firsts = (0..known.len()).filter(|&i| !share(known[i], &known[..i]) && share(known[i], &known[i + 1..]));
+    let tilts = |first: usize| {
+        let id = &positions[first].id;
+        tilts("attitude_tilt", id, Group::Attitude, |axis| Effect::AttitudeTilt { axis, first })
     };
-    let stated: Vec<usize> = (0..positions.len()).filter(|&k| positions[k].attitude_uncertainty.is_some()).collect();
-    let shares = |k: usize, others: &[usize]| others.iter().any(|&n| positions[n].shares_attitude(&positions[k]));
-    let firsts = (0..stated.len()).filter(|&i| !shares(stated[i], &stated[..i]) && shares(stated[i], &stated[i + 1..]));
-    firsts.flat_map(|i| [0, 1].map(|axis| tilt(axis, stated[i]))).collect()
+    firsts.flat_map(|i| tilts(known[i])).collect()
+}
+
+/// Indices of the positions whose attitude is known.
+fn in_known_attitudes(experiment: &Experiment) -> Vec<usize> {
+    let positions = experiment.positions.iter().enumerate();
+    positions.filter(|(_, position)| position.attitude_uncertainty.is_some()).map(|(k, _)| k).collect()
+}
+
+/// Tilts [rad] about both horizontal axes, named after a stem and what they are of.
+fn tilts(stem: &str, of: &str, group: Group, tilt: impl Fn(usize) -> Effect) -> [Parameter; 2] {
+    [0, 1].map(|axis| effect(format!("{stem}_{}[{of}]", axis + 1), "rad", group, tilt(axis), 1e-3))
 }
 
 /// Typical magnitude of a bias [m/s^2].

@@ -88,7 +88,7 @@ impl MeasurementModel {
 
     /// The rivals that the model leaves out, neither unknown nor stated: of the session, of each of its mountings, and of each speed that is set
     /// more than once and not measured. Where there are more than a hundred mountings, or speeds, single ones are not asked for. Rests alone are
-    /// not asked for products of third degree: at 1 g errors of attitudes look like them, and are far larger.
+    /// not asked for further terms of third degree: at 1 g errors of the attitudes look like them and are far larger.
     pub fn left_out(&self) -> Vec<Rival> {
         let common = Rival::COMMON.into_iter().zip(self.stated.effects).filter(|(_, u)| *u == 0.0);
         let of_mounting = |mounting: usize| {

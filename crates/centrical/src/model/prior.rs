@@ -2,7 +2,7 @@
 //!
 //! Unknowns are errors against nominal values, so the mean `m_j` of a prior is zero unless it was measured. A prior is never silent: an
 //! estimate can be asked how much of its variance comes from priors ([`share`]), and a prior how much the data
-//! have added to it ([`PriorUse`]).
+//! have added to it ([`uses`]).
 
 use nalgebra::{DMatrix, DVector};
 use thiserror::Error;

@@ -55,14 +55,12 @@ impl Study {
 
     fn rest_angles(&self) -> Condition {
         let is_meant = |s: &SetPoint| s.is_rest() && self.is_on_arm(s);
-        let mut angles: Vec<f64> = Vec::new();
-        for set_point in self.read().filter(|s| is_meant(s)) {
-            if !angles.iter().any(|angle| set_point.rests_at(*angle)) {
-                angles.push(set_point.angle);
-            }
-        }
+        let angles = SetPoint::distinct_angles(self.read().filter(|s| is_meant(s)).enumerate());
         // The angle that is read most is the one that a poorer experiment would keep.
-        let kept = angles.iter().copied().max_by_key(|a| self.read().filter(|s| is_meant(s) && s.rests_at(*a)).count());
+        let kept = angles
+            .iter()
+            .map(|(_, angle)| *angle)
+            .max_by_key(|a| self.read().filter(|s| is_meant(s) && s.rests_at(*a)).count());
         let is_met = angles.len() >= 2;
         Condition {
             requirement: "plateaus at rest at two or more angles about the rotation axis",

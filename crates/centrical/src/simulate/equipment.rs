@@ -95,7 +95,7 @@ pub struct Recorder {
     pub rate: f64,
     /// Errors of transmission in one newtonometer's reading: probability per sample, and the standard deviation of the error [m/s^2].
     pub spikes: Chance,
-    /// Runs of lost samples: probability per sample that one begins, and the mean number of its samples, geometrically distributed.
+    /// Runs of lost samples: probability per sample that one begins, and the mean number of its samples, 1 or more, geometrically distributed.
     pub gaps: Chance,
     /// Probability that a sample is recorded twice, with the same time.
     pub repeats: f64,

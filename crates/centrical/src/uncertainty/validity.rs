@@ -11,7 +11,7 @@
 use nalgebra::{DMatrix, DVector, SymmetricEigen, Vector3};
 
 use super::rivals::chance_of_explaining;
-use crate::fit::{Calibration, Data};
+use crate::fit::{Calibration, Data, Gain};
 use crate::model::{FitError, Observation};
 use crate::progress::{OnProgress, advance, unwatched};
 use crate::statistics::chi_squared_tail;
@@ -19,7 +19,7 @@ use crate::statistics::chi_squared_tail;
 /// A share of a reading below this is rounding: the reading is not redundant, nothing checks it.
 const REDUNDANT: f64 = 1e-8;
 
-/// Redundant part of a reading, below which no other reading checks it: its residual shows less than a tenth of its error.
+/// Redundant part of a reading, below which no other reading checks it: all residuals together show less than a tenth of its error.
 const CHECKED: f64 = 0.01;
 
 /// Part of the variance of a parameter that comes from such readings, above which nothing checks the parameter.
@@ -99,18 +99,18 @@ impl Calibration<'_> {
             probability: chi_squared_tail(fit.chi_squared, fit.degrees_of_freedom),
             plateaus: (0..observations.len()).map(|n| blocks.plateau(n, observations[n].set_point)).collect(),
             mountings: mountings.collect(),
-            unchecked: self.unchecked(&blocks)?,
+            unchecked: self.unchecked(&blocks, gain),
         })
     }
 
-    /// Parameters of the instrument with more than half of their variance from readings that no other reading checks, where any does.
-    fn unchecked(&self, blocks: &Blocks) -> Result<Vec<usize>, FitError> {
+    /// Parameters of the instrument with more than half of their variance from readings that no other reading checks.
+    fn unchecked(&self, blocks: &Blocks, gain: &Gain) -> Vec<usize> {
         let (fit, parameters) = (self.fit(), self.data().model().parameters());
         let mut variances = vec![0.0; parameters.len()];
         for n in 0..self.data().observations().len() {
             let followed = blocks.followed_alone(n);
             if followed.ncols() > 0 {
-                let shifts = self.gain()?.shifts(&followed);
+                let shifts = gain.shifts(&followed);
                 variances.iter_mut().zip(shifts.row_iter()).for_each(|(sum, shift)| *sum += shift.norm_squared());
             }
         }
@@ -118,7 +118,7 @@ impl Calibration<'_> {
             let u = fit.standard_uncertainty(j).filter(|_| parameters[j].is_of_instrument());
             u.is_some_and(|u| variances[j] > MOSTLY * u * u)
         };
-        Ok((0..parameters.len()).filter(is_unchecked).collect())
+        (0..parameters.len()).filter(is_unchecked).collect()
     }
 
     /// chi^2 of a fit of the same data whose noise has `times` the variance. What is stated of attitudes and speeds stays.

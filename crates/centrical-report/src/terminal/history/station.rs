@@ -30,6 +30,11 @@ pub fn station_history_text(report: &StationHistoryReport) -> Screen {
 
 /// Whether the machine is steady, and what is not tested.
 fn verdict(screen: &mut Screen, report: &StationHistoryReport) {
+    if report.parameters.is_empty() {
+        let words = "the calibrations have no parameters of a machine in common: rests alone have none";
+        screen.marked(Emphasis::Warning, "NOT TESTED", words);
+        return;
+    }
     let untested = report.parameters.iter().filter(|p| p.probability.is_none()).count();
     match report.is_steady {
         Some(true) => {
@@ -51,11 +56,6 @@ fn verdict(screen: &mut Screen, report: &StationHistoryReport) {
             counted(confounded, "parameter")
         );
         screen.marked(Emphasis::Warning, "NOT TESTED", &words);
-    }
-    if report.parameters.is_empty() {
-        let words = "the calibrations have no parameters of a machine in common: rests alone have none";
-        screen.marked(Emphasis::Warning, "NOT TESTED", words);
-        return;
     }
     let untested = untested - confounded;
     if untested > 0 || report.is_steady.is_none() && confounded == 0 {

@@ -86,12 +86,13 @@ pub struct UnitHistoryReport {
     /// Whether the last date is later than tomorrow: a wrong clock, or day and month exchanged.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub ahead: bool,
-    /// Whether a reading compensated by the last calibration is within the limit after a switch-on that day; null without a limit, and where
-    /// some readings are not determined and none is beyond.
+    /// Whether a reading compensated by the last calibration is within the limit after a switch-on that day; null without a limit, where
+    /// some readings are not determined and none is beyond, and on a day after calibrations that are all of one day.
     pub is_within: Option<bool>,
-    /// The first due date of all readings; null where some are not determined, unless one is overdue.
+    /// The first due date of all readings; null where some are not determined, or all calibrations are of one day, unless one is overdue.
     pub due: Option<DueDate>,
-    /// The day at which the search for a due date ended; null where some readings are not determined.
+    /// The day at which the search for a due date ended; null where some readings are not determined, or all
+    /// calibrations are of one day.
     pub due_after: Option<Date>,
     /// Compensated readings, those that two calibrations or more determine.
     pub readings: Vec<ReadingHistory>,

@@ -30,6 +30,17 @@ pub enum Redundancy<'r> {
     Nowhere,
 }
 
+impl<'r> Redundancy<'r> {
+    /// Of a fit with some degrees of freedom and parameters that nothing checks.
+    pub fn of(degrees_of_freedom: usize, unchecked: &'r [String]) -> Self {
+        match (degrees_of_freedom, unchecked) {
+            (0, _) => Self::Nowhere,
+            (_, []) => Self::Everywhere,
+            (_, unchecked) => Self::ButFor(unchecked),
+        }
+    }
+}
+
 impl CalibrationResult {
     /// The objections to the result; empty if it is acceptable.
     pub fn objections(&self) -> Vec<ResultObjection> {
@@ -71,11 +82,7 @@ impl CalibrationResult {
     /// How far redundant readings check the result.
     pub fn redundancy(&self) -> Redundancy<'_> {
         let unchecked = self.validity.as_ref().map_or(&[][..], |validity| &validity.unchecked);
-        match (self.fit.degrees_of_freedom, unchecked) {
-            (0, _) => Redundancy::Nowhere,
-            (_, []) => Redundancy::Everywhere,
-            (_, unchecked) => Redundancy::ButFor(unchecked),
-        }
+        Redundancy::of(self.fit.degrees_of_freedom, unchecked)
     }
 
     /// Whether chi^2 is smaller than chance allows: the stated uncertainties are too large then.

@@ -32,8 +32,8 @@ pub(super) fn level_width(nominal_z: &Vector3<f64>) -> f64 {
 /// Blocks whose mean is compared with that of as many before: the more, the slower a change is seen.
 const REACH: f64 = 4.0;
 
-/// From so many [`REACH`] on, whole revolutions may reach beyond a plateau from each of its blocks: these may be steady by the shorter reach
-/// instead, as they are unless the axis is tilted.
+/// Whole revolutions above this many [`REACH`] may be longer than half a plateau, and then join each of its blocks to a ramp. The blocks of such a
+/// plateau may be steady by [`REACH`] instead; a tilted axis alone prevents that.
 const LONG: f64 = 4.0;
 
 /// Noise of a dead channel, over the span of the readings.
@@ -293,7 +293,7 @@ impl Candidate<'_> {
     /// blocks from one on.
     pub fn density(&self, noise: &Vector3<f64>, from: usize, density: &mut [f64]) {
         self.evidence.density_of_change(self.reach, noise, from, density);
-        if self.reach > LONG * REACH {
+        if self.is_slow() {
             let mut near = [0.0; LAYER];
             let near = &mut near[..density.len()];
             self.evidence.density_of_change(REACH, noise, from, near);
@@ -331,8 +331,15 @@ impl Candidate<'_> {
 
     /// The reach by which blocks of a range are compared with others of it: the shorter one where whole revolutions leave it.
     fn reach_within(&self, range: &Range<usize>) -> f64 {
-        let leaves = self.reach > LONG * REACH && (range.len() as f64) < 3.0 * self.reach;
+        /// In a range of fewer reaches, most blocks have no whole reach to both sides.
+        const FEW: f64 = 3.0;
+        let leaves = self.is_slow() && (range.len() as f64) < FEW * self.reach;
         if leaves { REACH } else { self.reach }
+    }
+
+    /// Whether whole revolutions may be longer than half the plateau.
+    fn is_slow(&self) -> bool {
+        self.reach > LONG * REACH
     }
 
     /// Whether the level of a block is more likely the plateau's than any other.
