@@ -485,6 +485,23 @@ fn sessions_of_a_single_day_have_no_trend() {
     assert!(due["due"].is_null() && due["due_after"].is_null(), "{due}");
 }
 
+/// Two calibrations show no drift: no day follows from them unless parameters are taken as constant.
+#[test]
+fn two_calibrations_give_a_due_date_without_a_trend_alone() {
+    let results = Results::new();
+    for (session, date) in [(0, "2024-05-01"), (1, "2025-05-01")] {
+        results.add(&format!("s{session}"), "0001", date, |result| {
+            set(result, "df_1", 1e-3 + 1e-5 * f64::from(session));
+        });
+    }
+    let (_, text, _) = results.run(&["unit", ".", "--limit", "1 g"]);
+    assert!(text.contains("NOT KNOWN  two calibrations do not show until when"), "{text}");
+    let due = results.document(&["unit", ".", "--limit", "1 g"]);
+    assert!(due["due"].is_null() && due["due_after"].is_null(), "{due}");
+    let due = results.document(&["unit", ".", "--limit", "1 g", "--without-trend"]);
+    assert!(due["due_after"].is_string() && due["is_within"] == true, "{due}");
+}
+
 /// Results of the same records agree better than independent calibrations do.
 #[test]
 fn results_that_are_too_alike_are_named() {

@@ -90,7 +90,11 @@ fn due(screen: &mut Screen, report: &UnitHistoryReport) {
         }
         (None, Some(limit), None) => {
             let of_one_day = report.sessions.windows(2).all(|pair| pair[0].date == pair[1].date);
-            let calibrations = if of_one_day { "calibrations of a single day" } else { "the calibrations" };
+            let calibrations = match report.sessions.len() {
+                _ if of_one_day => "calibrations of a single day",
+                2 => "two calibrations",
+                _ => "the calibrations",
+            };
             let words = format!("{calibrations} do not show until when a compensated reading is {}", within(limit));
             screen.marked(Emphasis::Warning, "NOT KNOWN", &words);
         }

@@ -87,12 +87,12 @@ pub struct UnitHistoryReport {
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub ahead: bool,
     /// Whether a reading compensated by the last calibration is within the limit after a switch-on that day; null without a limit, where
-    /// some readings are not determined and none is beyond, and on a day after calibrations that are all of one day.
+    /// some readings are not determined and none is beyond, and on a day after calibrations that show no drift.
     pub is_within: Option<bool>,
-    /// The first due date of all readings; null where some are not determined, or all calibrations are of one day, unless one is overdue.
+    /// The first due date of all readings; null where some are not determined, or the calibrations show no drift, unless one is overdue.
     pub due: Option<DueDate>,
-    /// The day at which the search for a due date ended; null where some readings are not determined, or all
-    /// calibrations are of one day.
+    /// The day at which the search for a due date ended; null where some readings are not determined, or the
+    /// calibrations show no drift: two, or those of one day.
     pub due_after: Option<Date>,
     /// Compensated readings, those that two calibrations or more determine.
     pub readings: Vec<ReadingHistory>,

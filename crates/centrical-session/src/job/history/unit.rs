@@ -116,9 +116,10 @@ pub fn unit_history(
         parameter.step = parameter.step.filter(|_| parameter.drifts || parameter.scatters);
     }
     let readings = job.readings();
-    // Of some readings alone a day would pass for that of all. Sessions of a single day show no drift, and say nothing of later days.
+    // Of some readings alone a day would pass for that of all. Where parameters may drift, two calibrations and those of a single day show no
+    // drift, and say nothing of later days.
     let are_all = readings.len() == READINGS;
-    let shows_drift = has_days || !request.trend;
+    let shows_drift = trend || !request.trend;
     let due = readings.iter().filter_map(|r| r.due.as_ref()).min_by_key(|due| due.date).cloned();
     let due = due.filter(|due| (are_all && shows_drift) || due.date <= on);
     Some(UnitHistoryReport {
