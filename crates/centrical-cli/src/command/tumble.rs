@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use centrical_report::refuse_outputs;
 use centrical_session::{
-    ColumnName, Error, Folder, Method, Place, STANDARD_GRAVITY, Session, StatedAttitudes, TumbleRequest, calibrate,
-    claim_folder, tumble, unwatched,
+    ColumnName, Error, Folder, Method, Place, Session, StatedAttitudes, TumbleRequest, calibrate, claim_folder, tumble,
+    unwatched,
 };
 
 use super::report::Documents;
@@ -57,7 +57,7 @@ pub struct Arguments {
     #[arg(long)]
     serial: Option<String>,
     /// Date of the records, such as 2026-11-23
-    #[arg(long)]
+    #[arg(long, value_parser = TumbleRequest::date)]
     date: Option<String>,
     /// Folder for result.json, the rests as a session, the report and its plots, created if absent
     #[arg(short, long, value_name = "DIR")]
@@ -110,7 +110,7 @@ fn of_session(arguments: &Arguments, path: &Path) -> Result<Outcome, Error> {
 impl Arguments {
     /// What is to be made of records.
     fn request(&self) -> Result<TumbleRequest, Error> {
-        let uncertain = if self.gravity.is_some() { 0.0 } else { TumbleRequest::GRAVITY_ANYWHERE };
+        let [gravity, gravity_uncertainty] = TumbleRequest::gravity(self.gravity, self.gravity_uncertainty);
         let readings =
             self.readings.clone().map_or_else(|| ["f1", "f2", "f3"].map(named), |ThreeColumns(columns)| columns);
         Ok(TumbleRequest {
@@ -120,8 +120,8 @@ impl Arguments {
             rate: self.rate,
             readings,
             unit: self.unit.clone().unwrap_or_else(|| "m/s^2".to_owned()),
-            gravity: self.gravity.unwrap_or(STANDARD_GRAVITY),
-            gravity_uncertainty: self.gravity_uncertainty.unwrap_or(uncertain),
+            gravity,
+            gravity_uncertainty,
             attitudes: (self.attitudes.iter().zip(self.attitude_uncertainty))
                 .map(|(name, uncertainty)| StatedAttitudes::named(name, uncertainty))
                 .next()

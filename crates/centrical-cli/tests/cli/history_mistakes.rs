@@ -380,10 +380,34 @@ fn sessions_that_may_not_be_meant_are_named() {
     }
     results.add("again", "0001", "2025-03-02", |result| set(result, "df_1", 1e-3 * f64::from(5 * 7 % 5 - 2)));
     results.add("other", "00-01", "2025-04-01", |_| {});
+    results.add("spreadsheet", "1", "2025-05-01", |_| {});
     let (_, text, message) = results.run(&["unit", ".", "--serial", "0001"]);
     assert!(text.contains("DEVIATES  2022-03-01"), "{text}");
     assert!(text.contains("TWICE  2025-03-01"), "{text}");
-    assert!(message.contains("SPELLING  calibrations of serial \"00-01\" are not taken"), "{message}");
+    assert!(message.contains("SPELLING  calibrations of serial \"00-01\", \"1\" are not taken"), "{message}");
+}
+
+/// A gravity that one session of a station states otherwise than the others is named before its parameters deviate; a store names its
+/// sessions by digits that fit on a line.
+#[test]
+fn gravities_of_one_station_that_differ_are_named() {
+    let results = Results::new();
+    for n in 0..4 {
+        let gravity = if n == 2 { 9.8162 } else { 9.81523 };
+        results.add(&n.to_string(), "0001", &format!("202{n}-03-01"), |result| {
+            result["model"]["gravity"] = json!(gravity);
+        });
+    }
+    let (_, text, _) = results.run(&["unit", "."]);
+    let words = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(words.contains("states 9.81523 m/s^2 and 2022-03-01"), "{text}");
+    assert_eq!(words.matches("GRAVITY").count(), 2, "{text}");
+    assert_eq!(results.document(&["unit", "."])["sessions"][2]["gravity"], 9.8162);
+    assert_eq!(results.run(&["add", "store", "."]).0, 0);
+    let (_, text, _) = results.run(&["unit", "store"]);
+    let key = text.lines().find(|line| line.trim_start().starts_with("1  2020-03-01")).unwrap();
+    let key = key.split_whitespace().last().unwrap();
+    assert!(key.len() == 12 && key.bytes().all(|digit| digit.is_ascii_hexdigit()), "{text}");
 }
 
 /// The table of batches of a spreadsheet begins with a byte order mark; means of batches that differ are shown.

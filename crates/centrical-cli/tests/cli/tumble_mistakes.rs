@@ -42,6 +42,13 @@ fn the_record_in_another_unit_is_named() {
     }
 }
 
+/// A date that histories could not sort by is refused before the records are read.
+#[test]
+fn a_text_that_is_no_day_is_refused() {
+    let message = refused(&Copy::new(), &["none.csv", "--date", "31.12.2025"]);
+    assert!(message.contains("found \"31.12.2025\", expected a day such as 2026-10-05"), "{message}");
+}
+
 /// One newtonometer alone: no other unit fits the record, and its file is the one that is there.
 #[test]
 fn a_column_in_another_unit_is_refused_in_its_record() {

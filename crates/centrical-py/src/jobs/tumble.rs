@@ -3,9 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use centrical_report::{Language, refuse_outputs, write_all_documents};
-use centrical_session::{
-    Dimension, Error, Folder, Quantity, STANDARD_GRAVITY, StatedAttitudes, TumbleRequest, claim_folder,
-};
+use centrical_session::{Dimension, Error, Folder, Quantity, StatedAttitudes, TumbleRequest, claim_folder};
 use nalgebra::Vector3;
 use pyo3::prelude::*;
 
@@ -49,7 +47,7 @@ pub fn tumble(
     if gravity.is_none() && uncertainty.is_some() {
         return Err(refused("gravity_uncertainty", "found without gravity, expected both"));
     }
-    let anywhere = if gravity.is_some() { 0.0 } else { TumbleRequest::GRAVITY_ANYWHERE };
+    let [gravity, gravity_uncertainty] = TumbleRequest::gravity(gravity, uncertainty);
     let (mut files, mut folder) = (Vec::new(), Folder::default());
     for record in records {
         let file;
@@ -63,14 +61,14 @@ pub fn tumble(
         rate: Amount::checked(rate, "rate", Quantity::sampling_rate)?,
         readings: [column("readings", first)?, column("readings", second)?, column("readings", third)?],
         unit: TumbleRequest::unit(&unit).map_err(|wrong| refused("unit", wrong))?,
-        gravity: gravity.unwrap_or(STANDARD_GRAVITY),
-        gravity_uncertainty: uncertainty.unwrap_or(anywhere),
+        gravity,
+        gravity_uncertainty,
         attitudes: None,
         turning_radius: Amount::checked(turning_radius, "turning_radius", TumbleRequest::turning_radius)?,
         terms: terms.unwrap_or_else(|| TumbleRequest::USUAL_TERMS.map(str::to_owned).to_vec()),
         model,
         serial,
-        date,
+        date: TumbleRequest::date(&date).map_err(|wrong| refused("date", wrong))?,
     };
     let attitudes = attitudes.map(|(attitudes, uncertainty)| checked(attitudes, uncertainty)).transpose()?;
     let result = progress::run(py, &shown, |work| {

@@ -27,8 +27,9 @@ pub fn comparison_text(report: &ComparisonReport, language: Language) -> Screen 
     for (n, result) in report.results.iter().enumerate() {
         let ComparedResultSummary { file, title, date, acceptable, .. } = result;
         let verdict = if *acceptable { String::new() } else { format!("; {}", messages.not_acceptable) };
-        let (unit, date) = (unit(result, messages), language.written_date(date));
-        screen.say(2, &format!("{}  {file}: {unit}, {date}, {title}{verdict}", n + 1));
+        let session = [unit(result, messages), language.written_date(date), title.clone()];
+        let session: Vec<String> = session.into_iter().filter(|part| !part.is_empty()).collect();
+        screen.say(2, &format!("{}  {file}: {}{verdict}", n + 1, session.join(", ")));
     }
     for pair in &report.comparisons {
         one_pair(&mut screen, report, pair, language);

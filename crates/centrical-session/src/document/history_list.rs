@@ -38,7 +38,7 @@ pub struct Doubt {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum DoubtKind {
-    /// Units or stations whose names differ in no more than spaces, hyphens, case, or Cyrillic for Latin letters.
+    /// Units or stations whose names differ in no more than spaces, hyphens, case, leading zeros, or Cyrillic for Latin letters.
     Spelling,
     /// Results of the same files.
     SameInputs,

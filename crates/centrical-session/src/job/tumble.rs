@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use centrical::reduction::{CoarseScale, Record, Rests};
-use centrical::{OnProgress, advance};
+use centrical::{OnProgress, STANDARD_GRAVITY, advance};
 use centrical_table::{ColumnName, TableLines, refuse_inputs, unit_of_word, write_whole};
 use nalgebra::Vector3;
 
@@ -17,7 +17,7 @@ use crate::experiment::{
     ASKEW, EXPERIMENT_FILE, Folder, MOST_DISTANT, RAW_OUTPUT, RestSource, Session, StatedAttitudes, Turning,
     misalignments_left_out, refuse_another_session, write_attitudes, write_plateaus,
 };
-use crate::quantity::{NotThatQuantity, Quantity};
+use crate::quantity::{Date, NotThatQuantity, Quantity};
 use crate::record::{EqualColumns, Input, RECORD, Scale, named_columns};
 use crate::reduced::{Reduced, ReducedPlateau, rest_rows};
 use crate::settings::toml_text;
@@ -90,8 +90,25 @@ impl TumbleRequest {
         self.files.iter().chain(attitudes).map(PathBuf::as_path)
     }
 
-    /// Standard uncertainty of the gravity of an unknown place on Earth [m/s^2]: rectangular from 9.764 to 9.834 m/s^2.
-    pub const GRAVITY_ANYWHERE: f64 = 0.02;
+    /// Gravity at the place and its standard uncertainty [m/s^2], by what is stated of both: exact unless an uncertainty is stated; that of any
+    /// place on Earth without a statement.
+    pub fn gravity(stated: Option<f64>, uncertainty: Option<f64>) -> [f64; 2] {
+        /// Rectangular from 9.764 to 9.834 m/s^2.
+        const ANYWHERE: f64 = 0.02;
+        let usual = if stated.is_some() { 0.0 } else { ANYWHERE };
+        [stated.unwrap_or(STANDARD_GRAVITY), uncertainty.unwrap_or(usual)]
+    }
+
+    /// A date of records as it is written: a day of ISO 8601, with or without a time; empty if it is not stated.
+    ///
+    /// # Errors
+    /// What was found and expected.
+    pub fn date(text: &str) -> Result<String, String> {
+        match text.parse::<Date>() {
+            Err(expected) if !text.is_empty() => Err(format!("found {text:?}, {expected}")),
+            _ => Ok(text.to_owned()),
+        }
+    }
 }
 
 /// A calibration by rests.

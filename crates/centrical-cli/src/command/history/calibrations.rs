@@ -245,7 +245,7 @@ impl Choice {
         }
     }
 
-    /// Other serial numbers that differ from the one asked for in spaces, hyphens, case or Cyrillic letters alone.
+    /// Other serial numbers that differ from the one asked for in spaces, hyphens, case, leading zeros or Cyrillic letters alone.
     fn alike(&self) -> String {
         let Some(asked) = &self.serial else { return String::new() };
         let wanted = spelling(asked);

@@ -64,7 +64,7 @@ const fn words(kind: DoubtKind) -> (&'static str, &'static str) {
     match kind {
         DoubtKind::Spelling => (
             "SPELLING",
-            "found names that differ in spaces, hyphens, case or Cyrillic letters alone, expected one name for one unit or station",
+            "found names that differ in spaces, hyphens, case, leading zeros or Cyrillic letters alone, expected one name for one unit or station",
         ),
         DoubtKind::SameInputs => {
             ("SAME FILES", "found results of the same files, expected one: histories count each as a session")

@@ -28,7 +28,7 @@ pub fn unit_history_text(report: &UnitHistoryReport) -> Screen {
             date.into(),
             session.station.as_str().into(),
             verdict.into(),
-            session.source.as_str().into(),
+            short(&session.source).into(),
         ]);
     }
     screen.table(table);
@@ -46,6 +46,7 @@ fn verdict(screen: &mut Screen, report: &UnitHistoryReport) {
     incomplete(screen, report);
     steps(screen, report);
     sameness(screen, report);
+    gravities(screen, report);
     twice(screen, report);
     if report.sessions.len() < 3 {
         screen.marked(Emphasis::Warning, "FEW", "two calibrations show no trend beside the scatter between sessions");
@@ -120,7 +121,7 @@ fn last_calibration(screen: &mut Screen, report: &UnitHistoryReport) {
 /// Calibrations and parameters that are not compared, and calibrations with an objection.
 fn incomplete(screen: &mut Screen, report: &UnitHistoryReport) {
     for LeftOutSession { session, lacks } in report.incomplete.iter().take(NAMES) {
-        let words = format!("{}, {}: it does not determine {}", session.date, session.source, first_of(lacks));
+        let words = format!("{}, {}: it does not determine {}", session.date, short(&session.source), first_of(lacks));
         screen.marked(Emphasis::Warning, "INCOMPLETE", &words);
     }
     if report.incomplete.len() > NAMES {
@@ -183,6 +184,8 @@ fn sameness(screen: &mut Screen, report: &UnitHistoryReport) {
                 "TOO ALIKE",
                 "; the calibrations agree better than independent ones do: results of the same records, or uncertainties that are too large",
             )
+        } else if report.deviating().is_some() {
+            (Emphasis::Heading, "TOGETHER", "")
         } else {
             (Emphasis::Acceptable, "THE SAME", "")
         };
@@ -193,7 +196,7 @@ fn sameness(screen: &mut Screen, report: &UnitHistoryReport) {
             "{}, {}: a session deviates as much by the stated uncertainties with a probability of {}, and by the scatter of the others with {}; \
              the others as they do by the stated uncertainties with {}",
             session.date,
-            session.source,
+            short(&session.source),
             chance(session.probability),
             chance(session.probability_by_scatter),
             chance(session.probability_of_others)
@@ -202,19 +205,40 @@ fn sameness(screen: &mut Screen, report: &UnitHistoryReport) {
     }
 }
 
+/// Sessions of one place that state different gravities.
+fn gravities(screen: &mut Screen, report: &UnitHistoryReport) {
+    for [one, other] in report.gravities() {
+        let [first, then] = [one, other].map(|session| session.gravity.map_or_else(String::new, |g| g.to_string()));
+        let place = if one.station.is_empty() { "without a station" } else { "at one station" };
+        let words = format!(
+            "{}, {} states {first} m/s^2 and {}, {} {then} m/s^2, {place}: a wrong value moves each scale error by as much",
+            one.date,
+            short(&one.source),
+            other.date,
+            short(&other.source)
+        );
+        screen.marked(Emphasis::Warning, "GRAVITY", &words);
+    }
+}
+
 /// Sessions that may be one.
 fn twice(screen: &mut Screen, report: &UnitHistoryReport) {
     for [one, other] in report.twice() {
         let words = format!(
             "{}, {} and {}, {} have the same values to the last digit, and count as two sessions",
-            one.date, one.source, other.date, other.source
+            one.date,
+            short(&one.source),
+            other.date,
+            short(&other.source)
         );
         screen.marked(Emphasis::Warning, "TWICE", &words);
     }
     for [one, other] in report.same_days() {
         let words = format!(
             "{}: {} and {} count as two sessions in this order, by the times of their dates and then by their names",
-            one.date, one.source, other.source
+            one.date,
+            short(&one.source),
+            short(&other.source)
         );
         screen.marked(Emphasis::Warning, "SAME DAY", &words);
     }
@@ -224,7 +248,14 @@ fn twice(screen: &mut Screen, report: &UnitHistoryReport) {
 pub(super) fn left_out(left_out: &LeftOutSession) -> String {
     let session = &left_out.session;
     let lacks = first_of(&left_out.lacks);
-    format!("{}, {}: it does not determine {lacks}, and is not compared", session.date, session.source)
+    format!("{}, {}: it does not determine {lacks}, and is not compared", session.date, short(&session.source))
+}
+
+/// The file of a session; of its key in a store, 64 digits, the first that a person compares.
+fn short(source: &str) -> &str {
+    const DIGITS: usize = 12;
+    let is_key = source.len() == 64 && source.bytes().all(|digit| digit.is_ascii_hexdigit());
+    if is_key { &source[..DIGITS] } else { source }
 }
 
 /// The first names, and the number of the others.

@@ -1,5 +1,7 @@
 //! One unit over its calibrations, as a document: schema `centrical-unit-history/1`.
 
+use std::collections::BTreeMap;
+
 use centrical::Group;
 use centrical::uncertainty::Level;
 use serde::Serialize;
@@ -26,6 +28,9 @@ pub struct PastSession {
     /// The same as the session states it, where that says more than the day.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub stamp: Option<String>,
+    /// Gravity at the place, as stated [m/s^2], where it is known.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub gravity: Option<f64>,
     /// Whether no check raised an objection.
     pub acceptable: bool,
 }
@@ -228,6 +233,17 @@ impl UnitHistoryReport {
     /// Whether the calibrations agree better than what they state allows.
     pub fn agrees_too_well(&self) -> bool {
         self.sameness.as_ref().is_some_and(|test| 1.0 - test.probability < TOO_WELL)
+    }
+
+    /// Pairs of sessions of one station, one after the other, that state different gravities. Sessions that name no station count as of one.
+    pub fn gravities(&self) -> Vec<[&PastSession; 2]> {
+        let mut last: BTreeMap<&str, &PastSession> = BTreeMap::new();
+        let mut pairs = Vec::new();
+        for session in self.sessions.iter().filter(|session| session.gravity.is_some()) {
+            let before = last.insert(&session.station, session);
+            pairs.extend(before.filter(|before| before.gravity != session.gravity).map(|before| [before, session]));
+        }
+        pairs
     }
 
     /// Pairs of sessions with the same values to the last digit: one session that counts twice.

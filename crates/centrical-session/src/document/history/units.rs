@@ -91,7 +91,7 @@ pub struct BeyondLimit {
 pub struct BatchWithoutUnit {
     /// The serial number.
     pub unit_serial: String,
-    /// Units whose serial numbers differ from it in spaces, hyphens, case, or Cyrillic for Latin letters alone.
+    /// Units whose serial numbers differ from it in spaces, hyphens, case, leading zeros, or Cyrillic for Latin letters alone.
     pub near: Vec<String>,
 }
 

@@ -174,6 +174,7 @@ impl Calibrated {
             station: self.station.clone(),
             date: self.date,
             stamp: Some(self.stamp.clone()).filter(|stamp| *stamp != self.date.to_string()),
+            gravity: Some(self.gravity).filter(|gravity| gravity.is_finite()),
             acceptable: self.acceptable,
         }
     }

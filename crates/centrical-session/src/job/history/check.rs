@@ -43,7 +43,7 @@ pub fn check_store(folder: &Path, selection: Selection, progress: OnProgress) ->
     Ok(list)
 }
 
-/// Units, and stations, whose names differ in no more than spaces, hyphens, case, and Cyrillic for Latin letters.
+/// Units, and stations, whose names differ in no more than spaces, hyphens, case, leading zeros, and Cyrillic for Latin letters.
 fn two_spellings(rows: &[&Row]) -> Vec<Doubt> {
     let mut units: BTreeMap<(String, String), BTreeSet<String>> = BTreeMap::new();
     let mut stations: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
@@ -56,12 +56,16 @@ fn two_spellings(rows: &[&Row]) -> Vec<Doubt> {
     several.map(|names| Doubt { kind: DoubtKind::Spelling, of: names.into_iter().collect() }).collect()
 }
 
-/// A name without what is mistaken: small Latin letters and digits alone. A name of other characters is its own.
+/// A name without what is mistaken: small Latin letters and digits alone, without leading zeros. A name of other characters is its own.
 pub fn spelling(name: &str) -> String {
     let letters = name.chars().flat_map(char::to_lowercase).filter(|c| c.is_alphanumeric());
     let latin = |c: char| LOOKALIKES.iter().find(|(cyrillic, _)| *cyrillic == c).map_or(c, |(_, latin)| *latin);
-    let spelling: String = letters.map(latin).collect();
-    if spelling.is_empty() { name.to_owned() } else { spelling }
+    let letters: String = letters.map(latin).collect();
+    match letters.trim_start_matches('0') {
+        _ if letters.is_empty() => name.to_owned(),
+        "" => "0".to_owned(),
+        spelling => spelling.to_owned(),
+    }
 }
 
 /// Cyrillic letters, and the Latin ones whose capitals look the same.

@@ -320,22 +320,17 @@ fn without_unit(batches: &BTreeMap<String, String>, lasts: &[&Calibrated]) -> Ve
     let serials: BTreeSet<&str> = lasts.iter().map(|unit| unit.unit_serial.as_str()).collect();
     let mut by_spelling: BTreeMap<String, Vec<String>> = BTreeMap::new();
     for serial in &serials {
-        by_spelling.entry(without_zeros(serial)).or_default().push((*serial).to_owned());
+        by_spelling.entry(spelling(serial)).or_default().push((*serial).to_owned());
     }
     let without = batches.keys().filter(|serial| !serials.contains(serial.as_str()));
     let mut without: Vec<BatchWithoutUnit> = without
         .map(|serial| BatchWithoutUnit {
             unit_serial: serial.clone(),
-            near: by_spelling.get(&without_zeros(serial)).cloned().unwrap_or_default(),
+            near: by_spelling.get(&spelling(serial)).cloned().unwrap_or_default(),
         })
         .collect();
     without.sort_by_key(|of| of.near.is_empty());
     without
-}
-
-/// A serial number as a spreadsheet may leave it: 0042 becomes 42.
-fn without_zeros(serial: &str) -> String {
-    spelling(serial).trim_start_matches('0').to_owned()
 }
 
 /// The units of batches by their sessions at one station, where most of them can be compared: type B that sessions of a station share would
