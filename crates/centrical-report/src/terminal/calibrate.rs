@@ -2,7 +2,8 @@
 
 use centrical::Group;
 use centrical_session::{
-    CalibrationResult, OutputSummary, ParameterEstimate, RivalSummary, TermSummary, ValiditySummary, customary,
+    CalibrationResult, OutlyingPlateau, OutputSummary, ParameterEstimate, RivalSummary, TermSummary, ValiditySummary,
+    customary,
 };
 
 use super::axes::axes as other_axes;
@@ -295,40 +296,22 @@ fn validity(screen: &mut Screen, result: &CalibrationResult) {
     if result.chi_squared_is_small() {
         screen.fact("", Language::English.messages().chi_squared_small);
     }
-    let held_out = result.held_out();
-    let fitted = result.plateaus.len() - held_out.len();
-    if !held_out.is_empty() {
-        let names = held_out.iter().take(NAMES).map(String::as_str).collect::<Vec<_>>().join(", ");
-        let others = if held_out.len() > NAMES { ", ..." } else { "" };
-        screen.fact("", &format!("{} held out of the fit: {names}{others}", counted(held_out.len(), "plateau")));
-    }
-    if validity.outlying.is_empty() {
-        screen.fact("", &format!("none of the {} stands out", counted(fitted, "plateau")));
-    }
-    for plateau in &validity.outlying {
-        let [r_1, r_2, r_3] = plateau.standardised;
-        screen.fact("", &format!(
-            "plateau {}:{} STANDS OUT, standardised residuals {r_1:.1}, {r_2:.1}, {r_3:.1}, chance {:.1e}; --hold-out \
-             {0}:{1} leaves it out",
-            plateau.mounting,
-            plateau.index + 1,
-            plateau.probability
-        ));
-    }
+    let is_of_rests = result.rests().count() == result.plateaus.len();
+    outlying(screen, result, &validity.outlying, is_of_rests);
     rivals(screen, validity);
-    if validity.patterns.is_empty() {
-        let text = format!(
-            "none of {} against speed, position, radius and time in the residuals",
-            counted(validity.patterns_tested, "pattern")
-        );
+    if validity.patterns.is_empty() && validity.patterns_tested > 0 {
+        let against = if is_of_rests { "time" } else { "speed, position, radius and time" };
+        let count = counted(validity.patterns_tested, "pattern");
+        let text = format!("none of {count} against {against} in the residuals");
         screen.fact("", &text);
     }
     for pattern in &validity.patterns {
         screen.fact("", &pattern_in_words(pattern));
     }
     if let Some((worst, family_wise)) = validity.worst_mounting() {
+        let what = if is_of_rests { "rest" } else { "mounting" };
         let text = format!(
-            "each mounting predicted from all others: mounting {} is the worst, chi^2 {:.1} with {}; a worst of {} as \
+            "each {what} predicted from all others: {what} {} is the worst, chi^2 {:.1} with {}; a worst of {} as \
                  large comes by chance with a probability of {family_wise:.3}",
             worst.mounting,
             worst.chi_squared,
@@ -336,6 +319,41 @@ fn validity(screen: &mut Screen, result: &CalibrationResult) {
             validity.mountings.len()
         );
         screen.fact("", &text);
+    }
+}
+
+/// Plateaus that were held out, and those that stand out.
+fn outlying(screen: &mut Screen, result: &CalibrationResult, outlying: &[OutlyingPlateau], is_of_rests: bool) {
+    let held_out = result.held_out();
+    let fitted = result.plateaus.len() - held_out.len();
+    if !held_out.is_empty() {
+        let names = held_out.iter().take(NAMES).map(String::as_str).collect::<Vec<_>>().join(", ");
+        let others = if held_out.len() > NAMES { ", ..." } else { "" };
+        screen.fact("", &format!("{} held out of the fit: {names}{others}", counted(held_out.len(), "plateau")));
+    }
+    if outlying.is_empty() {
+        screen.fact(
+            "",
+            &format!("none of the {} stands out", counted(fitted, if is_of_rests { "rest" } else { "plateau" })),
+        );
+    }
+    for plateau in outlying {
+        let [r_1, r_2, r_3] = plateau.standardised;
+        let number = format!("{}:{}", plateau.mounting, plateau.index + 1);
+        // A rest is a mounting of its own; a session alone can hold it out.
+        let (name, command) = if is_of_rests {
+            (format!("rest {}", plateau.mounting), "calibrate SESSION ")
+        } else {
+            (format!("plateau {number}"), "")
+        };
+        screen.fact(
+            "",
+            &format!(
+                "{name} STANDS OUT, standardised residuals {r_1:.1}, {r_2:.1}, {r_3:.1}, chance {:.1e}; \
+             {command}--hold-out {number} leaves it out",
+                plateau.probability
+            ),
+        );
     }
 }
 
