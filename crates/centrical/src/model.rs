@@ -8,6 +8,7 @@
 //!
 //! `H` is the Jacobian of the exact model at `X = 0` (test `h_is_the_jacobian_at_zero`).
 
+mod course;
 mod effect;
 mod error;
 mod error_model;
@@ -31,7 +32,8 @@ mod share;
 mod single_rest;
 mod stated;
 
-pub use effect::{Course, Effect, Law};
+pub use course::{Course, Law};
+pub use effect::Effect;
 pub use error::FitError;
 pub use error_model::{ErrorModel, Extra, Term};
 pub use experiment::{

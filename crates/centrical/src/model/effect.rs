@@ -3,7 +3,8 @@
 
 use centrical_compensate::Monomial;
 
-use super::experiment::{Experiment, STANDARD_GRAVITY};
+use super::course::{Course, Law};
+use super::experiment::Experiment;
 
 /// An effect on the readings, per unit of its size. Axes are 0, 1, 2.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -187,51 +188,6 @@ impl Scope {
     }
 }
 
-/// What a disturbance follows.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Course {
-    /// 1 while the centrifuge spins: an aliased line, rectified vibration of the drive.
-    Spinning,
-    /// `|Omega|` [rad/s]: rectified vibration of an imbalance below its resonance, or of bearings.
-    Speed,
-    /// `Omega^2` [rad^2/s^2]: rectified vibration that grows with the speed.
-    SquaredSpeed,
-    /// `Omega^4` [rad^4/s^4]: rectified vibration of an imbalance, whose force is one with `Omega^2`.
-    FourthPowerOfSpeed,
-    /// `-M_ii f_i`: a proof mass that yields to its force, in open loop or a soft loop.
-    Yield,
-    /// The order of the plateaus in the session, -1/2 to 1/2.
-    Time,
-    /// The same times `f_i`: a scale that changes with time.
-    TimeScale,
-    /// 1 on the first plateau of a mounting, half as much on each that follows: a unit that is switched on with each mounting.
-    WarmUp,
-    /// The same times `f_i`.
-    WarmUpScale,
-    /// +1 after a rise of the speed, -1 after a fall.
-    Rise,
-    /// The specific force of the plateaus before, each half as much as the next.
-    Memory,
-    /// Sense of the change of `f_i` since the plateau before, `d / hypot(d, 0.05 g)`: hysteresis.
-    Turn,
-}
-
-impl Course {
-    /// Whether it depends on what came before a plateau.
-    fn is_of_history(self) -> bool {
-        match self {
-            Self::Time
-            | Self::TimeScale
-            | Self::WarmUp
-            | Self::WarmUpScale
-            | Self::Rise
-            | Self::Memory
-            | Self::Turn => true,
-            Self::Spinning | Self::Speed | Self::SquaredSpeed | Self::FourthPowerOfSpeed | Self::Yield => false,
-        }
-    }
-}
-
 impl Effect {
     /// The scale of a newtonometer in one mounting, relative.
     pub(super) fn scale_of_mounting(axis: usize, mounting: usize) -> Self {
@@ -250,7 +206,7 @@ impl Effect {
 
     /// Whether it depends on what came before a plateau.
     pub(super) fn is_of_history(self) -> bool {
-        matches!(self, Self::Disturbance { follows, .. } if follows.is_of_history())
+        matches!(self, Self::Disturbance { follows, .. } if follows.facts().is_of_history)
     }
 
     /// Whether it is a deformation that grows with the square of the speed.
@@ -322,47 +278,6 @@ impl Effect {
             | Self::Latitude
             | Self::Disturbance { .. }
             | Self::Rounding { .. } => Scope::Session,
-        }
-    }
-}
-
-/// What an elastic deformation grows with.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Law {
-    /// `Omega^2` [rad^2/s^2].
-    Speed,
-    /// The load `Omega^2 |R0_1|` [m/s^2].
-    Load,
-}
-
-impl Law {
-    /// Value at a rate squared [rad^2/s^2] and a radius [m].
-    pub fn value(self, omega_squared: f64, radius: f64) -> f64 {
-        match self {
-            Self::Speed => omega_squared,
-            Self::Load => omega_squared * radius.abs(),
-        }
-    }
-
-    pub(super) fn name(self) -> &'static str {
-        match self {
-            Self::Speed => "speed",
-            Self::Load => "load",
-        }
-    }
-
-    pub(super) fn unit_of_inverse(self) -> &'static str {
-        match self {
-            Self::Speed => "s^2",
-            Self::Load => "s^2/m",
-        }
-    }
-
-    /// Largest value the machines of the field reach (10 rev/s, 200 g): what turns a deformation into a coefficient.
-    pub(super) fn full_scale(self) -> f64 {
-        match self {
-            Self::Speed => (20.0 * std::f64::consts::PI).powi(2),
-            Self::Load => 200.0 * STANDARD_GRAVITY,
         }
     }
 }

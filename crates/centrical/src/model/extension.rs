@@ -5,9 +5,10 @@
 
 use centrical_compensate::Monomial;
 
-use super::effect::{Course, Effect, Law, Scope};
+use super::course::{BIAS, Course, Facts, Law};
+use super::effect::{Effect, Scope};
 use super::error_model::{ErrorModel, Term};
-use super::experiment::{Experiment, PairRelation, STANDARD_GRAVITY, Site};
+use super::experiment::{Experiment, PairRelation, Site};
 use super::group::Group;
 use super::parameter::{Kind, Parameter, coefficient, parameter};
 
@@ -212,7 +213,13 @@ impl Extension {
                 effect(name, "rad", Group::SpinTurn, Effect::SpinTurn { axis, position }, 1e-3)
             }),
             Self::ProofMasses => coordinates(experiment),
-            Self::Disturbance(course) => three(|axis| disturbance(axis, course)),
+            Self::Disturbance(course) => {
+                let (stem, Facts { unit, typical, .. }) = (self.name().replace('-', "_"), course.facts());
+                three(|axis| {
+                    let disturbance = Effect::Disturbance { axis, follows: course };
+                    effect(format!("{stem}_{}", axis + 1), unit, Group::Disturbance, disturbance, typical)
+                })
+            }
             Self::OneSpeed(speed) => {
                 let first = experiment.set_speeds().get(speed).map(|(first, _)| *first);
                 let name = format!("one_speed[{}]", speed + 1);
@@ -327,28 +334,6 @@ fn in_known_attitudes(experiment: &Experiment) -> Vec<usize> {
 /// Tilts [rad] about both horizontal axes, named after a stem and what they are of.
 fn tilts(stem: &str, of: &str, group: Group, tilt: impl Fn(usize) -> Effect) -> [Parameter; 2] {
     [0, 1].map(|axis| effect(format!("{stem}_{}[{of}]", axis + 1), "rad", group, tilt(axis), 1e-3))
-}
-
-/// Typical magnitude of a bias [m/s^2].
-const BIAS: f64 = 5e-3 * STANDARD_GRAVITY;
-
-fn disturbance(axis: usize, follows: Course) -> Parameter {
-    let (stem, unit, typical) = match follows {
-        Course::Spinning => ("spin_step", "m/s^2", BIAS),
-        Course::Speed => ("spin_speed", "m/s", BIAS / Law::Speed.full_scale().sqrt()),
-        Course::SquaredSpeed => ("spin_square", "m", BIAS / Law::Speed.full_scale()),
-        Course::FourthPowerOfSpeed => ("spin_fourth", "m s^2", BIAS / Law::Speed.full_scale().powi(2)),
-        Course::Yield => ("yield", "s^2", 5e-4 / Law::Load.full_scale()),
-        Course::Time => ("bias_drift", "m/s^2", BIAS),
-        Course::TimeScale => ("scale_drift", "1", 1e-3),
-        Course::WarmUp => ("warm_up", "m/s^2", BIAS),
-        Course::WarmUpScale => ("warm_up_scale", "1", 1e-3),
-        Course::Rise => ("rise_fall", "m/s^2", BIAS),
-        Course::Memory => ("memory", "1", 1e-3),
-        Course::Turn => ("hysteresis", "m/s^2", BIAS),
-    };
-    let name = format!("{stem}_{}", axis + 1);
-    effect(name, unit, Group::Disturbance, Effect::Disturbance { axis, follows }, typical)
 }
 
 /// The coordinates of proof masses that are taken as exact [m].

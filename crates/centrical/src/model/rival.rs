@@ -1,6 +1,6 @@
 //! The catalogue of rivals: physical effects that a model may leave out, and what each would do to the readings.
 
-use super::effect::{Course, Law};
+use super::course::{Course, Law};
 use super::error_model::{ErrorModel, Extra, Term};
 use super::experiment::Experiment;
 use super::extension::{Difference, Extension};
@@ -114,18 +114,7 @@ impl Rival {
                 Extension::AttitudesTilt => "theta, by stated attitude",
                 Extension::SpinTurn => "delta while spinning, by position",
                 Extension::ProofMasses => "d f / d rho_ji, those taken as exact",
-                Extension::Disturbance(Course::Spinning) => "1 where Omega > 0",
-                Extension::Disturbance(Course::Speed) => "|Omega|",
-                Extension::Disturbance(Course::FourthPowerOfSpeed) => "Omega^4",
-                Extension::Disturbance(Course::SquaredSpeed) => "Omega^2",
-                Extension::Disturbance(Course::Yield) => "-M_ii f_i",
-                Extension::Disturbance(Course::Time) => "t",
-                Extension::Disturbance(Course::TimeScale) => "t f_i",
-                Extension::Disturbance(Course::WarmUp) => "2^-n on plateau n of a mounting",
-                Extension::Disturbance(Course::WarmUpScale) => "2^-n f_i on plateau n of a mounting",
-                Extension::Disturbance(Course::Rise) => "+1 after a rise of Omega, -1 after a fall",
-                Extension::Disturbance(Course::Memory) => "sum_n 2^-n f_i, n plateaus before",
-                Extension::Disturbance(Course::Turn) => "+1 after a rise of f_i, -1 after a fall",
+                Extension::Disturbance(course) => course.facts().formula,
                 Extension::OneSpeed(_) => "d f / d ln Omega^2 at one set speed",
                 Extension::OneMounting(Difference::Shift, _) => "P D e_1, P D e_2 in one mounting",
                 Extension::OneMounting(Difference::Turn, _) => "delta in one mounting",

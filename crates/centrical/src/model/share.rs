@@ -2,10 +2,9 @@
 
 use nalgebra::Vector3;
 
-use super::effect::{Course, Effect};
+use super::effect::Effect;
 use super::experiment::{SetPoint, Site};
 use super::measurement::MeasurementModel;
-use super::nominal::Nominal;
 
 /// How one unit of an effect enters a plateau.
 pub(super) enum Share {
@@ -73,7 +72,7 @@ impl MeasurementModel {
                 Share::Reading(Vector3::ith(axis, monomial.value(experiment.nominal(set_point).into())))
             }
             Effect::Disturbance { axis, follows } => {
-                Share::Reading(Vector3::ith(axis, self.course(set_point, axis, follows)))
+                Share::Reading(Vector3::ith(axis, follows.value(experiment, set_point, axis)))
             }
             Effect::Turning { axis, .. } => {
                 // Only the acceleration along the vertical counts: that across it turns the specific force.
@@ -83,26 +82,6 @@ impl MeasurementModel {
             Effect::Rounding { axis, first } => {
                 only(set_point.history.repeats == Some(first), Share::Reading(along(axis)))
             }
-        }
-    }
-
-    /// Value on a plateau of what a disturbance follows.
-    fn course(&self, set_point: &SetPoint, axis: usize, course: Course) -> f64 {
-        let history = &set_point.history;
-        let f0 = || self.experiment.nominal(set_point)[axis];
-        match course {
-            Course::Spinning => f64::from(u8::from(!set_point.is_rest())),
-            Course::Speed => set_point.omega.abs(),
-            Course::SquaredSpeed => set_point.omega.powi(2),
-            Course::FourthPowerOfSpeed => set_point.omega.powi(4),
-            Course::Yield => -Nominal::of(&self.experiment, set_point).m[(axis, axis)] * f0(),
-            Course::Time => history.time,
-            Course::TimeScale => history.time * f0(),
-            Course::WarmUp => history.warm_up,
-            Course::WarmUpScale => history.warm_up * f0(),
-            Course::Rise => history.rise,
-            Course::Memory => history.memory[axis],
-            Course::Turn => history.turn[axis],
         }
     }
 }
