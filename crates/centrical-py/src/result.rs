@@ -242,7 +242,7 @@ impl CalibrationResult {
         }
         let terms = self.result.error_terms().map_err(|source| exception(py, &failed(source)))?;
         let expected = "a covariance of all coefficients of the error model";
-        Compensated::new(terms, self.result.of_unit().covariance)
+        Compensated::new(terms, self.result.covariance_of_coefficients())
             .map(Uncertain::OfInstrument)
             .ok_or_else(|| wrong_content(py, "covariance", "another shape", expected))
     }

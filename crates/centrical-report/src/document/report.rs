@@ -286,10 +286,10 @@ fn geometry_parameters(result: &CalibrationResult, language: Language) -> Vec<Bl
 fn with_parameters(
     mut blocks: Vec<Block>,
     result: &CalibrationResult,
-    of_unit: bool,
+    coefficients: bool,
     language: Language,
 ) -> Vec<Block> {
-    let shown = by_group(result, of_unit);
+    let shown = by_group(result, coefficients);
     if shown.is_empty() {
         return Vec::new();
     }

@@ -41,9 +41,9 @@ pub(super) fn rows_by_group(result: &CalibrationResult, shown: &[&ParameterEstim
     shown.chunk_by(|a, b| a.group == b.group).flat_map(in_group).collect()
 }
 
-/// The parameters of the unit, or all others, by group: groups in the order of their first member.
-pub(super) fn by_group(result: &CalibrationResult, of_unit: bool) -> Vec<&ParameterEstimate> {
-    let shown: Vec<_> = result.parameters.iter().filter(|p| result.is_of_unit(p) == of_unit).collect();
+/// The coefficients of the error model, or all other parameters, by group: groups in the order of their first member.
+pub(super) fn by_group(result: &CalibrationResult, coefficients: bool) -> Vec<&ParameterEstimate> {
+    let shown: Vec<_> = result.parameters.iter().filter(|p| result.is_coefficient(p) == coefficients).collect();
     let mut sorted = shown.clone();
     sorted.sort_by_key(|parameter| shown.iter().position(|first| first.group == parameter.group));
     sorted

@@ -63,7 +63,7 @@ fn of_speed(plateau: &PlateauSummary, residual: &Vector3<f64>) -> Option<Vector3
 
 /// The compensation of the unit; `None` if a coefficient is not determined.
 pub(crate) fn compensated(result: &CalibrationResult) -> Option<Compensated> {
-    Compensated::new(result.error_terms().ok()?, result.of_unit().covariance)
+    Compensated::new(result.error_terms().ok()?, result.covariance_of_coefficients())
 }
 
 fn matrix(rows: &[[f64; 3]; 3]) -> Matrix3<f64> {

@@ -147,7 +147,7 @@ fn label_and_axis(name: &str) -> Option<(String, usize)> {
 /// What fits neither table: extensions of the model.
 fn others(screen: &mut Screen, result: &CalibrationResult) {
     let is_known = |p: &ParameterEstimate| p.group.is_of_mounting() || p.group == Group::Attitude;
-    let is_other = |p: &&ParameterEstimate| !is_known(p) && !result.is_of_unit(p);
+    let is_other = |p: &&ParameterEstimate| !is_known(p) && !result.is_coefficient(p);
     let others: Vec<_> = result.parameters.iter().filter(is_other).collect();
     if others.is_empty() {
         return;
@@ -193,11 +193,11 @@ fn not_estimable(screen: &mut Screen, result: &CalibrationResult) {
             screen.sentence(2, 4, &format!("what the others are if these are zero: --terms {terms}"));
         }
     }
-    let is_shown = |p: &&ParameterEstimate| result.model.has_arm() || result.is_of_unit(p);
+    let is_shown = |p: &&ParameterEstimate| result.model.has_arm() || result.is_coefficient(p);
     let lost = result.parameters.iter().filter(|p| !p.estimable).filter(is_shown);
     let lost: Vec<&str> = lost.map(|p| p.name.as_str()).collect();
     screen.say(2, &format!("so these have no value of their own: {}", lost.join(", ")));
-    let of_instrument = result.parameters.iter().filter(|p| result.is_of_unit(p));
+    let of_instrument = result.parameters.iter().filter(|p| result.is_coefficient(p));
     let (of_instrument, lost_of_it) =
         of_instrument.fold((0, 0), |(n, lost), p| (n + 1, lost + usize::from(!p.estimable)));
     screen.say(

@@ -86,7 +86,7 @@ impl CalibrationResult {
         }
         let sources = &self.budget.as_ref()?.sources;
         let changes = sources.iter().find(|source| source.name == Source::Priors)?.changes.as_ref()?;
-        let is_of_unit = |p: &ParameterEstimate| p.group == Group::ProofMass || self.is_of_unit(p);
+        let is_of_unit = |p: &ParameterEstimate| p.group == Group::ProofMass || self.is_coefficient(p);
         let of_unit = with_prior.into_iter().zip(changes).filter(|((p, _), _)| is_of_unit(p));
         let row = |((p, prior), changes): ((&ParameterEstimate, PriorSummary), &Vec<Option<f64>>)| RowPrior {
             parameter: p.name.clone(),

@@ -121,7 +121,7 @@ fn of_error_model(result: &CalibrationResult) -> Option<Contradiction> {
             ));
         }
     }
-    let missing = result.parameters.iter().find(|p| ErrorModel::has_name(&p.name) && !result.is_of_unit(p))?;
+    let missing = result.parameters.iter().find(|p| ErrorModel::has_name(&p.name) && !result.is_coefficient(p))?;
     Some((format!("the parameter {:?} without its term in error_model", missing.name), "one".to_owned()))
 }
 

@@ -3,7 +3,6 @@
 use std::path::Path;
 
 use centrical::Source;
-use centrical::uncertainty::Estimates;
 use centrical_table::write_whole;
 use nalgebra::DMatrix;
 
@@ -61,21 +60,17 @@ impl CalibrationResult {
         self.observability.null_directions.iter().map(chiefly).collect()
     }
 
-    /// Whether a parameter belongs to the unit, and not to how it was mounted: a coefficient of the error model.
-    pub fn is_of_unit(&self, parameter: &ParameterEstimate) -> bool {
+    /// Whether a parameter is a coefficient of the error model.
+    pub fn is_coefficient(&self, parameter: &ParameterEstimate) -> bool {
         self.model.error_model.iter().any(|term| term.name == parameter.name)
     }
 
-    /// The estimates that the data determine, of the coefficients of the error model alone.
-    pub fn of_unit(&self) -> Estimates {
+    /// The covariance of the coefficients of the error model that the data determine, SI; NaN where the file has none.
+    pub fn covariance_of_coefficients(&self) -> DMatrix<f64> {
         let place = |name: &str| self.parameters.iter().position(|p| p.name == name && p.value.is_some());
         let own: Vec<usize> = self.model.error_model.iter().filter_map(|term| place(&term.name)).collect();
         let covariance = |a: usize, b: usize| self.covariance.get(own[a])?.get(own[b]).copied().flatten();
-        Estimates {
-            names: own.iter().map(|&j| self.parameters[j].name.clone()).collect(),
-            values: own.iter().filter_map(|&j| self.parameters[j].value).collect(),
-            covariance: DMatrix::from_fn(own.len(), own.len(), |a, b| covariance(a, b).unwrap_or(f64::NAN)),
-        }
+        DMatrix::from_fn(own.len(), own.len(), |a, b| covariance(a, b).unwrap_or(f64::NAN))
     }
 
     /// A parameter by name.

@@ -16,7 +16,7 @@ pub struct CalibratedParameter {
     pub unit: String,
     /// bias, scale, misalignment, ...
     pub group: Group,
-    /// Whether it belongs to the unit, and not to the machine or how the unit was mounted.
+    /// Whether it belongs to the unit, as a coefficient of the error model and a coordinate of a proof mass do.
     pub is_of_unit: bool,
     /// Newtonometer, 0 to 2, and role of a coefficient of the error model.
     pub coefficient: Option<(usize, Role)>,
