@@ -140,6 +140,8 @@ pub(super) fn rival(rival: Rival) -> &'static str {
         Rival::Terms(Extra::FourthPower) => "fourth power of the force",
         Rival::Terms(Extra::FifthPower) => "fifth power of the force",
         Rival::Terms(Extra::OwnSquares) => "square of the force",
+        Rival::Terms(Extra::CrossSquares) => "squares of the other components of the force",
+        Rival::Terms(Extra::OwnCubes) => "cube of the force",
         Rival::Terms(Extra::Jump) => "jump of the bias at zero force",
         Rival::Effect(extension) => match extension {
             Extension::ElasticTurn(Law::Speed) => {
@@ -196,6 +198,10 @@ pub(super) fn rival(rival: Rival) -> &'static str {
             Extension::Disturbance(Course::Rise) => "difference after a rise and after a fall of the speed",
             Extension::Disturbance(Course::Memory) => "memory of earlier forces",
             Extension::Disturbance(Course::Turn) => "hysteresis: a bias by the sense of the last change of the force",
+            Extension::BiasWander | Extension::Disturbance(Course::Wander(_)) => {
+                "bias that wanders over the session: warm-up, or a slow wave"
+            }
+            Extension::Disturbance(Course::From(_)) => "step of the bias between two rests",
             Extension::OneSpeed(_) => "one set speed that is off",
             Extension::OneMounting(Difference::Shift, _) => "shift of the unit in one mounting",
             Extension::OneMounting(Difference::Turn, _) => "turn of the unit in one mounting",

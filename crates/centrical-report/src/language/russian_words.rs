@@ -138,6 +138,8 @@ pub(super) fn rival(rival: Rival) -> &'static str {
         Rival::Terms(Extra::FourthPower) => "четвёртая степень силы",
         Rival::Terms(Extra::FifthPower) => "пятая степень силы",
         Rival::Terms(Extra::OwnSquares) => "квадрат силы",
+        Rival::Terms(Extra::CrossSquares) => "квадраты других составляющих силы",
+        Rival::Terms(Extra::OwnCubes) => "куб силы",
         Rival::Terms(Extra::Jump) => "скачок нуля при смене знака силы",
         Rival::Effect(extension) => match extension {
             Extension::ElasticTurn(Law::Speed) => {
@@ -192,6 +194,10 @@ pub(super) fn rival(rival: Rival) -> &'static str {
             Extension::Disturbance(Course::Rise) => "различие после роста и после спада скорости",
             Extension::Disturbance(Course::Memory) => "память о прежних силах",
             Extension::Disturbance(Course::Turn) => "гистерезис: нуль по знаку последнего изменения силы",
+            Extension::BiasWander | Extension::Disturbance(Course::Wander(_)) => {
+                "плавное изменение нуля за время эксперимента: прогрев или медленная волна"
+            }
+            Extension::Disturbance(Course::From(_)) => "скачок нуля между двумя положениями покоя",
             Extension::OneSpeed(_) => "ошибка одной заданной скорости",
             Extension::OneMounting(Difference::Shift, _) => "смещение прибора в одной установке",
             Extension::OneMounting(Difference::Turn, _) => "поворот прибора в одной установке",
@@ -201,7 +207,7 @@ pub(super) fn rival(rival: Rival) -> &'static str {
 }
 
 /// Words in the formulas of rivals.
-const OF_FORMULAS: [(&str, &str); 17] = [
+const OF_FORMULAS: [(&str, &str); 18] = [
     ("by position", "по положениям"),
     ("by seat", "по посадочным местам"),
     ("by mounting", "по установкам"),
@@ -209,6 +215,7 @@ const OF_FORMULAS: [(&str, &str); 17] = [
     ("by switch-on of rests", "по включениям в покое"),
     ("by stated attitude", "по заданным ориентациям"),
     ("by rest", "по положениям покоя"),
+    ("from one rest on", "начиная с одного положения покоя"),
     ("while spinning", "при вращении"),
     ("those taken as exact", "принятые за точные"),
     ("where", "при"),
@@ -284,7 +291,7 @@ pub(super) fn next_rest(next: &NextAttitudeSummary) -> String {
 
 #[cfg(test)]
 mod tests {
-    use centrical::{Difference, Extension, Rival};
+    use centrical::{Course, Difference, Extension, Rival};
 
     use super::formula;
 
@@ -295,6 +302,7 @@ mod tests {
     fn formulas_have_no_english_words() {
         let single = [
             Extension::OneSpeed(0),
+            Extension::Disturbance(Course::From(1)),
             Extension::OneMounting(Difference::Shift, 0),
             Extension::OneMounting(Difference::Turn, 0),
             Extension::OneMounting(Difference::Unit, 0),

@@ -1,6 +1,6 @@
 //! What a result rests on, as text for the terminal: the absence of effects, and prior knowledge.
 
-use centrical::{Extension, Extra, Group, Rival};
+use centrical::{Course, Extension, Extra, Group, Rival};
 use centrical_session::RestsOn;
 
 use super::phrases::{changes_for, rests_name};
@@ -38,6 +38,9 @@ fn protection(effect: &RestsOn) -> String {
     }
     if let Some(Rival::Effect(Extension::OneSpeed(_))) = effect.rival() {
         return "protect: measure the speeds (measured under [centrifuge])".to_owned();
+    }
+    if let Some(Rival::Effect(Extension::Disturbance(Course::From(_)))) = effect.rival() {
+        return "protect: further rests in attitudes of before show a smaller step".to_owned();
     }
     if let Some(Rival::Effect(Extension::EarthRate)) = effect.rival() {
         return "protect: state latitude under [site]".to_owned();

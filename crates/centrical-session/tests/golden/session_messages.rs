@@ -226,7 +226,7 @@ fn error_model_and_pair_relation() {
         (
             r#""kozlov-2017""#,
             r#""kozlov""#,
-            r#"[model], error_model: found "kozlov", expected "kozlov-2017", one of its terms such as "G0_11", "cross-products", "cross-cubes", "cubic-products", "own-squares", "odd-quadratic", "asymmetry", "fourth-power", "fifth-power", "jump", or { axis = 1, term = "f1*f2" }"#,
+            r#"[model], error_model: found "kozlov", expected "kozlov-2017", one of its terms such as "G0_11", "cross-products", "cross-cubes", "cubic-products", "own-squares", "cross-squares", "own-cubes", "odd-quadratic", "asymmetry", "fourth-power", "fifth-power", "jump", or { axis = 1, term = "f1*f2" }"#,
         ),
         (
             r#""kozlov-2017""#,

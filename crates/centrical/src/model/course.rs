@@ -18,7 +18,11 @@ pub enum Course {
     Yield,
     /// The order of the plateaus in the session, -1/2 to 1/2.
     Time,
-    /// The same times `f_i`: a scale that changes with time.
+    /// The Legendre polynomial of that degree, 1 to 3, in twice that order.
+    Wander(u8),
+    /// 1 from the plateau of that index on.
+    From(usize),
+    /// The order of the plateaus times `f_i`: a scale that changes with time.
     TimeScale,
     /// 1 on the first plateau of a mounting, half as much on each that follows: a unit that is switched on with each mounting.
     WarmUp,
@@ -56,6 +60,8 @@ impl Course {
             Self::FourthPowerOfSpeed => ("m s^2", BIAS / square.powi(2), false, "Omega^4"),
             Self::Yield => ("s^2", 5e-4 / Law::Load.full_scale(), false, "-M_ii f_i"),
             Self::Time => ("m/s^2", BIAS, true, "t"),
+            Self::Wander(_) => ("m/s^2", BIAS, true, "P_1(2t), P_2(2t), P_3(2t)"),
+            Self::From(_) => ("m/s^2", BIAS, true, "1 from one rest on"),
             Self::TimeScale => ("1", 1e-3, true, "t f_i"),
             Self::WarmUp => ("m/s^2", BIAS, true, "2^-n on plateau n of a mounting"),
             Self::WarmUpScale => ("1", 1e-3, true, "2^-n f_i on plateau n of a mounting"),
@@ -77,6 +83,8 @@ impl Course {
             Self::FourthPowerOfSpeed => set_point.omega.powi(4),
             Self::Yield => -Nominal::of(experiment, set_point).m[(axis, axis)] * f0(),
             Self::Time => history.time,
+            Self::Wander(degree) => legendre(degree, 2.0 * history.time),
+            Self::From(first) => f64::from(u8::from(history.time >= experiment.set_points[first].history.time)),
             Self::TimeScale => history.time * f0(),
             Self::WarmUp => history.warm_up,
             Self::WarmUpScale => history.warm_up * f0(),
@@ -84,6 +92,15 @@ impl Course {
             Self::Memory => history.memory[axis],
             Self::Turn => history.turn[axis],
         }
+    }
+}
+
+/// The Legendre polynomial of a degree of 1 to 3.
+fn legendre(degree: u8, x: f64) -> f64 {
+    match degree {
+        1 => x,
+        2 => 1.5 * x * x - 0.5,
+        _ => x * (2.5 * x * x - 1.5),
     }
 }
 

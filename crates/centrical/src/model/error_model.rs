@@ -48,6 +48,10 @@ pub enum Extra {
     CubicProducts,
     /// The even quadratic terms `K_ii f_i^2` of IEEE Std 1293: 3 coefficients `G1_11`, ..., which the source's model has and a coarser one lacks.
     OwnSquares,
+    /// The squares of the two other components, `f_j^2`, `j != i`: 6 coefficients `G1_12`, ..., which the source's model has.
+    CrossSquares,
+    /// The cubes `f_i^3`: 3 coefficients `G2_11`, ..., which the source's model has.
+    OwnCubes,
     /// The odd quadratic terms `K_oq f_i |f_i|` of IEEE Std 1293: 3 coefficients `K_1[f1*|f1|]`, ...
     OddQuadratic,
     /// The difference of the scales for positive and negative forces, `|f_i|` (IEEE Std 1293): 3 coefficients `K_1[|f1|]`, ...
@@ -62,11 +66,13 @@ pub enum Extra {
 
 impl Extra {
     /// Every extra with its name as written in sessions.
-    pub const NAMED: [(&'static str, Self); 9] = [
+    pub const NAMED: [(&'static str, Self); 11] = [
         ("cross-products", Self::CrossProducts),
         ("cross-cubes", Self::CrossCubes),
         ("cubic-products", Self::CubicProducts),
         ("own-squares", Self::OwnSquares),
+        ("cross-squares", Self::CrossSquares),
+        ("own-cubes", Self::OwnCubes),
         ("odd-quadratic", Self::OddQuadratic),
         ("asymmetry", Self::Asymmetry),
         ("fourth-power", Self::FourthPower),
@@ -98,15 +104,19 @@ impl Extra {
                 with_square.chain([Monomial::product(&[0, 1, 2])]).collect()
             }
             Self::OwnSquares => vec![Monomial::power(axis, 2)],
+            Self::CrossSquares => others(axis).map(|j| Monomial::power(j, 2)).to_vec(),
+            Self::OwnCubes => vec![Monomial::power(axis, 3)],
             Self::OddQuadratic => vec![Monomial::odd_square(axis)],
             Self::Asymmetry => vec![Monomial { sign_of: Some(axis), ..Monomial::power(axis, 1) }],
             Self::FourthPower => vec![Monomial::power(axis, 4)],
             Self::FifthPower => vec![Monomial::power(axis, 5)],
             Self::Jump => vec![Monomial { sign_of: Some(axis), ..Monomial::ONE }],
         };
-        let term = |axis: usize, monomial: Monomial| match self {
-            Self::OwnSquares => Term { name: format!("G1_{0}{0}", axis + 1), ..Term::new(axis, monomial) },
-            _ => Term::new(axis, monomial),
+        // A term of the source's model has its name.
+        let of_source = ErrorModel::kozlov_2017().terms;
+        let term = |axis: usize, monomial: Monomial| {
+            let known = of_source.iter().find(|term| (term.axis, term.monomial) == (axis, monomial));
+            known.cloned().unwrap_or_else(|| Term::new(axis, monomial))
         };
         (0..3).flat_map(|axis| monomials(axis).into_iter().map(move |m| term(axis, m))).collect()
     }

@@ -65,6 +65,8 @@ pub enum Extension {
     ProofMasses,
     /// A disturbance of the readings, one per newtonometer.
     Disturbance(Course),
+    /// Biases that wander over the session: polynomials of first to third degree in the order of the plateaus, nine unknowns.
+    BiasWander,
     /// One mounting, by its index, that differs from the others.
     OneMounting(Difference, usize),
     /// One set speed that is off, by its index among them, the lowest first ([`Experiment::set_speeds`]).
@@ -84,7 +86,7 @@ pub enum Difference {
 
 impl Extension {
     /// Every extension with its name as written in sessions and plans.
-    pub const NAMED: [(&'static str, Self); 40] = [
+    pub const NAMED: [(&'static str, Self); 41] = [
         ("elastic-turn-speed", Self::ElasticTurn(Law::Speed)),
         ("elastic-turn-load", Self::ElasticTurn(Law::Load)),
         ("arm-stretch-speed", Self::ArmStretch(Law::Speed)),
@@ -119,6 +121,7 @@ impl Extension {
         ("spin-fourth", Self::Disturbance(Course::FourthPowerOfSpeed)),
         ("yield", Self::Disturbance(Course::Yield)),
         ("bias-drift", Self::Disturbance(Course::Time)),
+        ("bias-wander", Self::BiasWander),
         ("scale-drift", Self::Disturbance(Course::TimeScale)),
         ("warm-up", Self::Disturbance(Course::WarmUp)),
         ("warm-up-scale", Self::Disturbance(Course::WarmUpScale)),
@@ -127,7 +130,7 @@ impl Extension {
         ("hysteresis", Self::Disturbance(Course::Turn)),
     ];
 
-    /// The extension of a name: one of [`Extension::NAMED`], or that of one mounting or one set speed, counted from 1: `other-unit[7]`.
+    /// The extension of a name: one of [`Extension::NAMED`], or that of one mounting, set speed or plateau, counted from 1: `other-unit[7]`.
     pub fn named(name: &str) -> Option<Self> {
         let of_session = Self::NAMED.iter().find(|(known, _)| *known == name).map(|(_, extension)| *extension);
         let of_one = || {
@@ -135,7 +138,11 @@ impl Extension {
             let index = number.parse::<usize>().ok()?.checked_sub(1)?;
             let difference = Difference::NAMED.iter().find(|(known, _)| *known == stem);
             let of_mounting = difference.map(|(_, difference)| Self::OneMounting(*difference, index));
-            of_mounting.or_else(|| (stem == ONE_SPEED).then_some(Self::OneSpeed(index)))
+            of_mounting.or(match stem {
+                ONE_SPEED => Some(Self::OneSpeed(index)),
+                BIAS_STEP => Some(Self::Disturbance(Course::From(index))),
+                _ => None,
+            })
         };
         of_session.or_else(of_one)
     }
@@ -148,6 +155,9 @@ impl Extension {
         }
         if let Self::OneSpeed(speed) = self {
             return format!("{ONE_SPEED}[{}]", speed + 1);
+        }
+        if let Self::Disturbance(Course::From(first)) = self {
+            return format!("{BIAS_STEP}[{}]", first + 1);
         }
         Self::NAMED.iter().find(|(_, extension)| *extension == self).map_or("", |(name, _)| name).to_owned()
     }
@@ -213,12 +223,21 @@ impl Extension {
                 effect(name, "rad", Group::SpinTurn, Effect::SpinTurn { axis, position }, 1e-3)
             }),
             Self::ProofMasses => coordinates(experiment),
+            Self::Disturbance(Course::From(first)) if first == 0 || first >= experiment.set_points.len() => Vec::new(),
+            Self::Disturbance(Course::From(first)) => {
+                let name = |axis: usize| format!("bias_step_{}[{}]", axis + 1, first + 1);
+                three(|axis| disturbance(name(axis), axis, Course::From(first)))
+            }
             Self::Disturbance(course) => {
-                let (stem, Facts { unit, typical, .. }) = (self.name().replace('-', "_"), course.facts());
-                three(|axis| {
-                    let disturbance = Effect::Disturbance { axis, follows: course };
-                    effect(format!("{stem}_{}", axis + 1), unit, Group::Disturbance, disturbance, typical)
-                })
+                let stem = self.name().replace('-', "_");
+                three(|axis| disturbance(format!("{stem}_{}", axis + 1), axis, course))
+            }
+            Self::BiasWander => {
+                let of_degree = |degree: u8| {
+                    let name = move |axis: usize| format!("bias_wander_{degree}_{}", axis + 1);
+                    three(|axis| disturbance(name(axis), axis, Course::Wander(degree)))
+                };
+                (1..=3).flat_map(of_degree).collect()
             }
             Self::OneSpeed(speed) => {
                 let first = experiment.set_speeds().get(speed).map(|(first, _)| *first);
@@ -241,8 +260,9 @@ impl Extension {
     }
 }
 
-/// Name of the extension of one set speed, before its number.
+/// Names of the extensions of one set speed and of one plateau, before its number.
 const ONE_SPEED: &str = "one-speed";
+const BIAS_STEP: &str = "bias-step";
 
 impl Difference {
     const NAMED: [(&'static str, Self); 3] =
@@ -334,6 +354,12 @@ fn in_known_attitudes(experiment: &Experiment) -> Vec<usize> {
 /// Tilts [rad] about both horizontal axes, named after a stem and what they are of.
 fn tilts(stem: &str, of: &str, group: Group, tilt: impl Fn(usize) -> Effect) -> [Parameter; 2] {
     [0, 1].map(|axis| effect(format!("{stem}_{}[{of}]", axis + 1), "rad", group, tilt(axis), 1e-3))
+}
+
+/// A disturbance of one newtonometer.
+fn disturbance(name: String, axis: usize, follows: Course) -> Parameter {
+    let Facts { unit, typical, .. } = follows.facts();
+    effect(name, unit, Group::Disturbance, Effect::Disturbance { axis, follows }, typical)
 }
 
 /// The coordinates of proof masses that are taken as exact [m].

@@ -2,6 +2,7 @@
 
 use nalgebra::Matrix3;
 
+use super::course::Course;
 use super::effect::Effect;
 use super::error_model::{ErrorModel, Extra};
 use super::experiment::{Experiment, SetPoint};
@@ -88,6 +89,7 @@ impl MeasurementModel {
 
     /// The rivals that the model leaves out, neither unknown nor stated: of the session, of each of its mountings, and of each speed that is set
     /// more than once and not measured. Where there are more than a hundred mountings, or speeds, single ones are not asked for. Rests alone are
+    /// asked for a step before each of up to a hundred, and a wander of the biases: on an arm each mounting is asked. They are
     /// not asked for further terms of third degree: at 1 g errors of the attitudes look like them and are far larger.
     pub fn left_out(&self) -> Vec<Rival> {
         let common = Rival::COMMON.into_iter().zip(self.stated.effects).filter(|(_, u)| *u == 0.0);
@@ -101,10 +103,18 @@ impl MeasurementModel {
         let of_speed = |k: usize| Rival::Effect(Extension::OneSpeed(k));
         let is_asked = |k: &usize| speeds.len() <= MOST_SINGLE && speeds[*k].1 > 1;
         let speeds = (0..speeds.len()).filter(is_asked).map(of_speed);
-        let needs_load = |rival: &Rival| matches!(rival, Rival::Terms(Extra::CrossCubes | Extra::CubicProducts));
-        let is_loaded = |rival: &Rival| self.experiment.has_arm() || !needs_load(rival);
+        let has_arm = self.experiment.has_arm();
+        let steps = 1..if has_arm { 0 } else { self.experiment.set_points.len() };
+        let steps = steps.filter(|_| self.experiment.set_points.len() <= MOST_SINGLE);
+        let step = |first: usize| Rival::Effect(Extension::Disturbance(Course::From(first)));
+        let is_of_other = |rival: &Rival| match rival {
+            Rival::Terms(Extra::CrossCubes | Extra::CubicProducts) => !has_arm,
+            Rival::Effect(Extension::BiasWander) => has_arm,
+            _ => false,
+        };
         let is_small = |rival: &Rival| rival.parameters(&self.experiment, &self.error_model).len() <= MOST_UNKNOWNS;
-        let all = common.map(|(rival, _)| rival).filter(is_loaded).filter(is_small).chain(mountings).chain(speeds);
+        let common = common.map(|(rival, _)| rival).filter(|rival| !is_of_other(rival)).filter(is_small);
+        let all = common.chain(mountings).chain(speeds).chain(steps.map(step));
         all.filter(|rival| !rival.is_in(&self.error_model, &self.extensions)).collect()
     }
 

@@ -80,6 +80,8 @@ impl Rival {
             Self::Terms(Extra::CrossCubes) => "f_j^3, j != i",
             Self::Terms(Extra::CubicProducts) => "f_j^2 f_k, j != k; f_1 f_2 f_3",
             Self::Terms(Extra::OwnSquares) => "f_i^2",
+            Self::Terms(Extra::CrossSquares) => "f_j^2, j != i",
+            Self::Terms(Extra::OwnCubes) => "f_i^3",
             Self::Terms(Extra::OddQuadratic) => "f_i |f_i|",
             Self::Terms(Extra::Asymmetry) => "|f_i|",
             Self::Terms(Extra::FourthPower) => "f_i^4",
@@ -115,6 +117,7 @@ impl Rival {
                 Extension::SpinTurn => "delta while spinning, by position",
                 Extension::ProofMasses => "d f / d rho_ji, those taken as exact",
                 Extension::Disturbance(course) => course.facts().formula,
+                Extension::BiasWander => Course::Wander(1).facts().formula,
                 Extension::OneSpeed(_) => "d f / d ln Omega^2 at one set speed",
                 Extension::OneMounting(Difference::Shift, _) => "P D e_1, P D e_2 in one mounting",
                 Extension::OneMounting(Difference::Turn, _) => "delta in one mounting",
@@ -130,7 +133,13 @@ impl Rival {
                 "IEEE Std 1293"
             }
             Self::Terms(
-                Extra::CrossCubes | Extra::CubicProducts | Extra::FourthPower | Extra::FifthPower | Extra::Jump,
+                Extra::CrossSquares
+                | Extra::OwnCubes
+                | Extra::CrossCubes
+                | Extra::CubicProducts
+                | Extra::FourthPower
+                | Extra::FifthPower
+                | Extra::Jump,
             ) => "power series of the characteristic",
             Self::Effect(extension) => match extension {
                 Extension::ElasticTurn(_) | Extension::PositionShift => "the source's abstract and section 3",
@@ -159,6 +168,7 @@ impl Rival {
                 | Extension::RestsBias
                 | Extension::RestsScale
                 | Extension::RestsUnit
+                | Extension::BiasWander
                 | Extension::Disturbance(_) => "electronics and material of the unit",
             },
         }

@@ -12,7 +12,7 @@ use nalgebra::Vector3;
 use super::rivals::columns::Columns;
 use super::verdict::Level;
 use crate::fit::{Calibration, Data, Fit, Termination};
-use crate::model::{ErrorModel, Extension, FitError, Kind, MeasurementModel, Observation, Parameter, Rival};
+use crate::model::{ErrorModel, FitError, Kind, MeasurementModel, Observation, Parameter, Rival};
 use crate::progress::{OnProgress, advance};
 use crate::statistics::{chi_squared_tail, f_tail};
 
@@ -108,8 +108,7 @@ fn candidates_of(model: &MeasurementModel) -> Vec<Candidate> {
             candidates.push(Candidate { name: name.to_owned(), rivals: Vec::new(), model });
         }
     }
-    let of_session =
-        |rival: &Rival| !matches!(rival, Rival::Effect(Extension::OneMounting(..) | Extension::OneSpeed(_)));
+    let of_session = |rival: &Rival| Rival::COMMON.contains(rival);
     candidates.extend(model.left_out().into_iter().filter(of_session).map(|rival| with_rivals(model, vec![rival])));
     candidates
 }

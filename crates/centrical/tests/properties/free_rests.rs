@@ -644,3 +644,31 @@ fn a_follower_of_rests_in_a_turned_case() {
         }
     }
 }
+
+/// Biases that step between two rests, or warm up, are named so where rests are alone: in each of 20 sessions of 26 rests, by the first effect or
+/// those that the data cannot tell from it.
+#[test]
+fn biases_that_step_or_warm_up_are_named() {
+    const CHANGE: f64 = 1e-2;
+    let mut random = Random::new(61);
+    for run in 0..20_u32 {
+        let model = rests_alone(&random_directions(26, &mut random), 2);
+        let x = truth(&model, 0.1, &mut random);
+        let first = 9 + run as usize % 10;
+        let step = |n: usize| f64::from(u8::from(n >= first));
+        let warm_up = |n: usize| (-(n as f64) / 5.0).exp();
+        let courses: [(&str, &dyn Fn(usize) -> f64); 2] =
+            [(&format!("bias-step[{}]", first + 1), &step), ("bias-wander", &warm_up)];
+        for (name, course) in courses {
+            let mut readings = observed(&model, &x, &mut random);
+            for (n, reading) in readings.iter_mut().enumerate() {
+                reading.mean += Vector3::new(1.0, -1.0, 1.0) * CHANGE * course(n);
+            }
+            let data = Data::new(&model, readings).unwrap();
+            let calibration = Calibration::exact(&data).unwrap();
+            let found = Rivals::of(&calibration, &unwatched).unwrap().suspects(Level::Objection.probability());
+            let names: Vec<String> = found.shown[..found.alike].iter().map(|test| test.rival.name()).collect();
+            assert!(names.iter().any(|named| named == name), "{run}: {names:?}, expected {name}");
+        }
+    }
+}

@@ -14,11 +14,12 @@ const SIGMAS: f64 = 8.0;
 /// Sessions of each effect.
 const SESSIONS: u64 = 20;
 
-/// Every rival of a session, each difference of one mounting, and one speed.
+/// Every rival of a session with an arm, each difference of one mounting, and one speed.
 fn catalogue() -> Vec<Rival> {
     let differences = [Difference::Shift, Difference::Turn, Difference::Unit];
     let of_one = differences.map(|difference| Rival::Effect(Extension::OneMounting(difference, 3)));
-    Rival::COMMON.into_iter().chain(of_one).chain([Rival::Effect(Extension::OneSpeed(1))]).collect()
+    let common = Rival::COMMON.into_iter().filter(|rival| *rival != Rival::Effect(Extension::BiasWander));
+    common.chain(of_one).chain([Rival::Effect(Extension::OneSpeed(1))]).collect()
 }
 
 /// The suspects of `observations` by the fit of `model`.
@@ -102,6 +103,8 @@ fn every_effect_is_shown_and_named() {
         followed,
         [
             "own-squares",
+            "cross-squares",
+            "own-cubes",
             "earth-rate",
             "seat-lateral",
             "rests-bias",
