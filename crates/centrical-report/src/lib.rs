@@ -21,8 +21,8 @@ pub use document::{Block, Document, Row, certificate, objection, report};
 pub use evaluation::UnitStatement;
 pub use figure::{Figure, chart_plots, comparison_plot, figures, frontier_plot, positions_figure, unit_history_plots};
 pub use files::{
-    DocumentRequest, Documents, PagesRequest, StorePages, read_issuer, refuse_outputs, write_all_documents,
-    write_documents, write_history_pages, write_history_plot, write_noise, write_plots,
+    DocumentRequest, Documents, PagesRequest, StorePages, certificates_in, read_issuer, refuse_outputs,
+    write_all_documents, write_documents, write_history_pages, write_history_plot, write_noise, write_plots,
 };
 pub use language::Language;
 pub use number::counted;

@@ -3,6 +3,7 @@
 mod attitude;
 mod candidates;
 mod columns;
+mod file_marks;
 mod folder;
 mod form;
 mod plan;
@@ -26,6 +27,7 @@ mod unit;
 
 pub(crate) use self::attitude::axes_text;
 pub use self::candidates::{Planning, available_time};
+pub(crate) use self::file_marks::FileMarks;
 pub use self::folder::Folder;
 pub(crate) use self::form::{Form as ExperimentForm, PlanForm};
 pub(crate) use self::plan::ExpectedValues;
@@ -38,6 +40,7 @@ pub(crate) use self::plateaus_written::write_plateaus_parquet;
 pub(crate) use self::rests::{KnownAttitudes, RecordedRests, RestSource, RestTable};
 pub(crate) use self::session::EXPERIMENT_FILE;
 pub use self::session::{MountingFiles, Session};
+pub use self::session_files::refuse_inputs;
 pub(crate) use self::session_files::{refuse_another_session, refuse_session};
 pub use self::speeds::{Measured, SpeedSource, Speeds};
 pub use self::stated_attitudes::StatedAttitudes;

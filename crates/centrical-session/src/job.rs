@@ -25,7 +25,7 @@ mod watch;
 pub use self::assess::{AssessmentRequest, assess};
 pub use self::axes::Axes;
 pub use self::calibrate::{calibrate, calibrate_reduced};
-pub use self::compare::{ComparisonRequest, compare_results};
+pub use self::compare::{ComparisonRequest, compare_results, result_beside};
 pub use self::compensate::{CompensatedRecord, CompensationRequest, compensate, compensate_record};
 pub use self::history::*;
 pub use self::init::{Draft, InitRequest, init, time_column};

@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use centrical_report::{
-    DocumentRequest, Emphasis, Screen, UnitStatement, read_issuer, result_text, unit_text, verdict_text,
-    write_all_documents, write_documents,
+    DocumentRequest, Emphasis, Screen, UnitStatement, certificates_in, read_issuer, result_text, unit_text,
+    verdict_text, write_all_documents, write_documents,
 };
 use centrical_session::{Axes, CalibrationResult, DocumentsReport, Error, Place};
 
@@ -94,6 +94,9 @@ impl Documents {
         let issuer = self.laboratory.as_deref().map(|file| read_issuer(file, result)).transpose()?;
         remark_other_days(issuer.as_ref().and_then(|issuer| issuer.other_days(result)).as_deref());
         if let Some(folder) = out {
+            if issuer.is_none() {
+                remark_old_certificates(folder);
+            }
             write_all_documents(result, issuer.as_ref(), self.language.into(), folder)?;
         }
         let objections = result.objections();
@@ -151,6 +154,16 @@ fn remark_other_days(words: Option<&str>) {
     let mut screen = Screen::default();
     if let Some(words) = words {
         screen.marked(Emphasis::Warning, "OTHER DAYS", words);
+    }
+    remark(&screen);
+}
+
+/// Remarks that certificates in a folder are of an earlier result, which was replaced without a new one.
+fn remark_old_certificates(folder: &Path) {
+    let mut screen = Screen::default();
+    for certificate in certificates_in(folder) {
+        let words = format!("{} is of an earlier result: --laboratory makes a new one", certificate.display());
+        screen.marked(Emphasis::Warning, "OLD CERTIFICATE", &words);
     }
     remark(&screen);
 }

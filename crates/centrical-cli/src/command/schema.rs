@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use crate::output::{Outcome, print};
-use centrical_session::{Error, SettingsForm, settings_schema, write_whole};
+use centrical_session::{Error, SettingsForm, refuse_inputs, settings_schema, write_whole};
 use clap::ValueEnum;
 
 /// Print the JSON Schema of a settings file, for completion and checks in an editor.
@@ -47,7 +47,10 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
         FormName::Laboratory => SettingsForm::Laboratory,
     })?;
     match &arguments.out {
-        Some(file) => write_whole(file, schema.as_bytes())?,
+        Some(file) => {
+            refuse_inputs(std::slice::from_ref(file), &[] as &[PathBuf])?;
+            write_whole(file, schema.as_bytes())?;
+        }
         None => print(&schema)?,
     }
     Ok(Outcome::Done)

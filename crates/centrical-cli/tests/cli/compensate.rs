@@ -227,6 +227,17 @@ fn a_session_of_another_unit_is_refused() {
     assert!(output.status.code() == Some(2) && text(&output).contains(expected), "{}", text(&output));
 }
 
+/// Coefficients are relative to the nominal output: a session in counts does not say what those of a result in m/s^2 do to a count.
+#[test]
+fn a_session_of_another_output_is_refused() {
+    let copy = calibrated();
+    let counts = "output_unit = \"counts\"\ncounts = { scale = [1.0, 1.01, 0.99], bias = [0.5, 0.0, -0.25] }";
+    copy.edit("experiment.toml", |text| text.replace("output_unit = \"m/s^2\"", counts));
+    let output = compensate(&copy, &["f.csv", "--session", copy.session().to_str().unwrap()]);
+    let expected = "expected output in a unit of acceleration, as in result.json";
+    assert!(output.status.code() == Some(2) && text(&output).contains(expected), "{}", text(&output));
+}
+
 /// A record in g is read in the unit of the calibration's records, and FLT_MAX among its readings is one spike.
 #[test]
 fn readings_are_in_the_unit_of_the_records() {

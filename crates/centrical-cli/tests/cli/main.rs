@@ -15,6 +15,7 @@ mod killed;
 mod live;
 mod noise;
 mod observe;
+mod overwritten;
 mod plan;
 mod plant;
 #[path = "../common/program.rs"]

@@ -4,6 +4,8 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use centrical_session::{CalibrationResult, result_beside};
+
 use crate::program;
 use crate::session::{Copy, example};
 
@@ -144,6 +146,19 @@ fn a_history_has_lines() {
         assert_eq!(run.status.code(), Some(2), "{message}");
         assert!(message.contains("h.jsonl: found no whole line, expected the history of a watch"), "{message}");
     }
+    // That of another unit would be drawn as if it led to this result.
+    let watch = copy.run(&["watch", copy.session().to_str().unwrap(), "--once", "--quiet", "0", "--out", "w"]);
+    assert!(watch.status.success(), "{watch:?}");
+    let history = fs::read_to_string(copy.out().join("w/watch-history.jsonl")).unwrap();
+    let report = |file: &str| copy.run(&["report", "result.json", "--history", file, "--html", "h.html"]);
+    assert!(report("w/watch-history.jsonl").status.success());
+    let last: serde_json::Value = serde_json::from_str(history.lines().last().unwrap()).unwrap();
+    let mut other = last.clone();
+    let scale = other["estimates"].as_array_mut().unwrap().iter_mut().find(|e| e["name"] == "G0_11").unwrap();
+    scale["value"] = 1e-2.into();
+    fs::write(copy.out().join("h.jsonl"), format!("{other}\n")).unwrap();
+    let message = String::from_utf8(report("h.jsonl").stderr).unwrap();
+    assert!(message.contains("found the history of another session"), "{message}");
 }
 
 /// A certificate without the laboratory's data is refused, as is a laboratory file with a mistake, by place.
@@ -308,6 +323,37 @@ fn a_unit_in_counts() {
     assert!(header.contains("#define CENTRICAL_RANGE 2.4516625e3"), "{header}");
     assert!(header.contains("in counts, by its nominal scale (1e0, 1.01e0, 9.9e-1) per m/s^2"), "{header}");
     assert!(header.contains("int centrical_compensate_raw("));
+}
+
+/// Beside a result of another data sheet a result before an adjustment stands relative to the same nominal values: the unit has not changed.
+#[test]
+fn a_result_before_is_relative_to_the_same_nominal_values() {
+    let copy = Copy::new();
+    let sheet = |from: &str, to: &str| copy.edit("experiment.toml", |text| text.replace(from, to));
+    let counts =
+        |scale: &str| format!("output_unit = \"counts\"\ncounts = {{ scale = {scale}, bias = [0.5, 0.0, -0.25] }}");
+    let (first, second) = (counts("[1.0, 1.01, 0.99]"), counts("[1.02, 1.01, 0.97]"));
+    let results = [("output_unit = \"m/s^2\"", first.as_str(), "before.json"), (&first, &second, "after.json")];
+    let results = results.map(|(from, to, name)| {
+        sheet(from, to);
+        assert!(copy.calibrate(&["-q"]).status.code() != Some(2));
+        fs::rename(copy.out().join("result.json"), copy.out().join(name)).unwrap();
+        (CalibrationResult::read(&copy.out().join(name)).unwrap(), Path::new(name))
+    });
+    let [(before, of), (after, file)] = results;
+    let beside = result_beside(before.clone(), of, &after, file).unwrap();
+    for parameter in after.parameters.iter().filter(|p| p.name.starts_with("df_") || p.name.starts_with('G')) {
+        let [was, now] = [&before, &beside].map(|result| result.parameter(&parameter.name).unwrap());
+        let u = parameter.standard_uncertainty.unwrap();
+        // Windows move by some samples where another scale is looked for.
+        let off = (now.value.unwrap() - parameter.value.unwrap()) / u;
+        assert!(off.abs() < 0.2, "{}: {off}", parameter.name);
+        assert!((now.standard_uncertainty.unwrap() / u - 1.0).abs() < 0.02, "{}", parameter.name);
+        assert!(parameter.name != "G0_11" || (was.value.unwrap() - parameter.value.unwrap()).abs() > 1e-2);
+    }
+    let mut in_volts = after.clone();
+    in_volts.output.as_mut().unwrap().unit = "V".to_owned();
+    assert!(result_beside(before, of, &in_volts, file).is_err());
 }
 
 /// A file that is not a picture, or too large a picture, is refused by name before anything is written.

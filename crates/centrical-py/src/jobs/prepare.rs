@@ -5,7 +5,8 @@ use std::path::PathBuf;
 use centrical_report::frontier_plot;
 use centrical_session::{
     self as session, InitRequest, ObservabilityReport, PlanRequest, Session, SettingsForm, SimulationReport, Truth,
-    USUAL_LEVELS, USUAL_TIMES, available_time, settings_schema, simulate_session, subject, subject_of, write_whole,
+    USUAL_LEVELS, USUAL_TIMES, available_time, refuse_inputs, settings_schema, simulate_session, subject, subject_of,
+    write_whole,
 };
 use pyo3::prelude::*;
 
@@ -47,6 +48,7 @@ pub fn schema(py: Python, form: &str, out: Option<PathBuf>) -> PyResult<String> 
     guarded(|| {
         let schema = settings_schema(form).map_err(|error| exception(py, &error))?;
         if let Some(file) = &out {
+            refuse_inputs(std::slice::from_ref(file), &[] as &[PathBuf]).map_err(|error| exception(py, &error))?;
             write_whole(file, schema.as_bytes()).map_err(|error| exception(py, &error.into()))?;
         }
         Ok(schema)

@@ -31,13 +31,20 @@ pub struct Issuer {
 }
 
 impl Issuer {
-    /// In words, that the file has the calibration on other days than that of the session: most often it is of another certificate.
+    /// In words, that the file has the calibration on other days than that of the session, most often because it is of another certificate; or
+    /// that the session's date is no day that could be compared.
     pub fn other_days(&self, result: &CalibrationResult) -> Option<String> {
         let (begun, ended) = (self.laboratory.certificate.begun, self.laboratory.certificate.ended);
-        let day = result.session.date.parse::<Date>().ok().filter(|day| *day < begun || *day > ended)?;
-        Some(format!(
-            "found [certificate] begun = {begun} and ended = {ended}, expected the day of the session between them, {day}"
-        ))
+        let days = format!("found [certificate] begun = {begun} and ended = {ended}");
+        match result.session.date.parse::<Date>() {
+            Ok(day) if day < begun || day > ended => {
+                Some(format!("{days}, expected the day of the session between them, {day}"))
+            }
+            Err(expected) if !result.session.date.is_empty() => {
+                Some(format!("{days} beside a session of {:?}, {expected} there", result.session.date))
+            }
+            _ => None,
+        }
     }
 }
 

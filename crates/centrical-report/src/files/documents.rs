@@ -5,8 +5,9 @@ use std::path::{Path, PathBuf};
 
 use centrical::MeasurementModel;
 use centrical_session::{
-    Axes, CalibrationResult, Date, DocumentKind, Error, HistoryEntry, Laboratory, Limitable, NoiseAnalysis, Place,
-    UnknownUnit, claim_folder, create_folder, history_up_to, read_history, refuse_inputs, write_whole,
+    Axes, CalibrationResult, Date, DocumentKind, Error, HistoryEntry, HistoryEstimate, Laboratory, Limitable,
+    NoiseAnalysis, Place, UnknownUnit, claim_folder, create_folder, history_up_to, read_history, refuse_inputs,
+    result_beside, write_whole,
 };
 
 use crate::codegen::source_of_result;
@@ -96,16 +97,22 @@ pub fn write_documents(request: &DocumentRequest) -> Result<Documents, Error> {
     }
     let language = request.language;
     let unit = issuer.as_ref().and_then(|issuer| issuer.unit.as_ref());
+    // What can be refused comes before the first document is written.
+    let before = (request.before.as_deref().zip(issuer.as_ref()))
+        .map(|(file, issuer)| before(file, &result, &request.result, &issuer.laboratory))
+        .transpose()?;
+    let dcc = (issuer.as_ref().filter(|_| request.dcc.is_some()))
+        .map(|issuer| dcc(&result, issuer, language, &request.result))
+        .transpose()?;
+    let history =
+        request.history.as_deref().map(|file| lines_of_history(file, &result)).transpose()?.unwrap_or_default();
     if let Some(file) = &request.html {
-        let history = request.history.as_deref().map(lines_of_history).transpose()?.unwrap_or_default();
         let group_of = |name: &str| result.parameter(name).map(|parameter| parameter.group);
         let mut drawn = figures(&result, language);
         drawn.extend(history_figure(&history, &group_of, language));
         write_whole(file, html(&report(&result, unit, past.as_ref(), drawn, language)).as_bytes())?;
     }
     if let Some(issuer) = &issuer {
-        let before = request.before.as_deref().map(|file| before(file, &result, &issuer.laboratory)).transpose()?;
-        let dcc = request.dcc.as_ref().map(|_| dcc(&result, issuer, language, &request.result)).transpose()?;
         if let Some(file) = &request.pdf {
             write_whole(
                 file,
@@ -135,12 +142,17 @@ pub fn write_documents(request: &DocumentRequest) -> Result<Documents, Error> {
 pub fn refuse_outputs(result: Option<&Path>, folder: Option<&Path>, inputs: &[&Path]) -> Result<(), Error> {
     let documents = [REPORT, CERTIFICATE, DIGITAL_CERTIFICATE].map(|name| Some(folder?.join(name)));
     let outputs: Vec<PathBuf> = result.map(Path::to_owned).into_iter().chain(documents.into_iter().flatten()).collect();
-    Ok(refuse_inputs(&outputs, inputs)?)
+    refuse_inputs(&outputs, inputs)
 }
 
 const REPORT: &str = "report.html";
 const CERTIFICATE: &str = "certificate.pdf";
 const DIGITAL_CERTIFICATE: &str = "certificate.xml";
+
+/// The certificates in a folder, whatever result they are of.
+pub fn certificates_in(folder: &Path) -> impl Iterator<Item = PathBuf> {
+    [CERTIFICATE, DIGITAL_CERTIFICATE].map(|name| folder.join(name)).into_iter().filter(|file| file.is_file())
+}
 
 /// Writes the report and its plots to a folder, and the certificates if the data of the laboratory are given.
 ///
@@ -187,12 +199,24 @@ pub fn write_noise(analysis: &NoiseAnalysis, folder: &Path) -> Result<(), Error>
 }
 
 /// A history that somebody names: with a line at least, which one that is just begun need not have.
-fn lines_of_history(file: &Path) -> Result<Vec<HistoryEntry>, Error> {
+fn lines_of_history(file: &Path, result: &CalibrationResult) -> Result<Vec<HistoryEntry>, Error> {
+    /// Estimates of a part of a session and of the whole do not lie farther apart, in standard uncertainties of the part.
+    const FARTHEST: f64 = 10.0;
     let lines = read_history(file)?;
-    if lines.is_empty() {
+    let Some(last) = lines.last() else {
         return Err(Error::content(file, Place::Whole, "no whole line", "the history of a watch"));
+    };
+    let agrees = |estimate: &HistoryEstimate| {
+        let own = result.parameter(&estimate.name)?;
+        let Some((value, u)) = estimate.value.zip(estimate.standard_uncertainty) else { return Some(true) };
+        Some(own.value.is_none_or(|own| (own - value).abs() <= FARTHEST * u))
+    };
+    let is_of_result = last.plateau <= result.plateaus.len() && last.estimates.iter().all(|e| agrees(e) == Some(true));
+    if is_of_result {
+        return Ok(lines);
     }
-    Ok(lines)
+    let expected = format!("that of the session of {}", result.session.unit());
+    Err(Error::content(file, Place::Whole, "the history of another session", expected))
 }
 
 /// Draws the history in a folder beside it, if it holds one.
@@ -251,8 +275,13 @@ fn with_attachment(certificate: Document, dcc: Option<&str>) -> Document {
     Document { attachment, ..certificate }
 }
 
-/// The result before an adjustment, which has to be of the same unit, and the laboratory has to say what it adjusted.
-fn before(file: &Path, after: &CalibrationResult, laboratory: &Laboratory) -> Result<CalibrationResult, Error> {
+/// The result in `file` before an adjustment, beside that `after` it in `of`: of the same unit, and the laboratory has to say what it adjusted.
+fn before(
+    file: &Path,
+    after: &CalibrationResult,
+    of: &Path,
+    laboratory: &Laboratory,
+) -> Result<CalibrationResult, Error> {
     let before = CalibrationResult::read(file)?;
     let unit = |result: &CalibrationResult| result.session.unit();
     let refuse = |found: String, expected: String| Err(Error::content(file, Place::Whole, found, expected));
@@ -272,7 +301,7 @@ fn before(file: &Path, after: &CalibrationResult, laboratory: &Laboratory) -> Re
         let expected = "[item] adjustment in the laboratory's file, what was adjusted between the two calibrations";
         return refuse("a result before an adjustment".to_owned(), expected.to_owned());
     }
-    Ok(before)
+    result_beside(before, file, after, of)
 }
 
 /// The digital certificate of the result in `file`.

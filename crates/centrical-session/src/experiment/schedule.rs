@@ -76,13 +76,19 @@ pub(crate) fn set_points(file: &Path, tables: &[MountingTable], rotation: Rotati
     Ok(set_points)
 }
 
+/// Largest angle of the arm at rest [rad]: 180 without a unit is 29 turns.
+const TWO_TURNS: f64 = 4.0 * std::f64::consts::PI;
+
 /// Speed [rad/s] and angle [rad] of plateau number `index`, from 0.
 fn plateau(at: &TomlPath, index: usize, entry: &PlateauEntry) -> Result<(f64, f64), Error> {
     let key = |name: &str| format!("plateaus {} {name}", index + 1);
     let meaning = "a speed from -1e6 to 1e6 rpm, positive in the direction of `rotation` in [centrifuge]";
     let speed = at.bounded(&key("speed"), &entry.speed, Dimension::Speed, (-FASTEST, FASTEST), meaning)?;
     match (&entry.angle, speed == 0.0) {
-        (Some(angle), true) => Ok((0.0, at.finite(&key("angle"), angle, Dimension::Angle)?)),
+        (Some(angle), true) => {
+            let meaning = "an angle from -720 deg to 720 deg; a number alone is in rad";
+            Ok((0.0, at.bounded(&key("angle"), angle, Dimension::Angle, (-TWO_TURNS, TWO_TURNS), meaning)?))
+        }
         (None, true) => Err(at.unexpected(&key("angle"), "no angle", "the carousel angle of a plateau at rest")),
         (None, false) => Ok((speed, 0.0)),
         (Some(angle), false) => {

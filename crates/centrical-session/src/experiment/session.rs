@@ -7,6 +7,7 @@ use centrical::{
     Centrifuge, ErrorModel, Experiment, Extension, MeasurementModel, PairRelation, Rotation, SetPoint, Site,
 };
 
+use super::file_marks::FileMarks;
 use super::folder::Folder;
 use super::form::{Form, ModelTable, MountingTable, SiteTable};
 use super::plateaus::PlateauTable;
@@ -68,6 +69,8 @@ pub struct Session {
     pub(super) priors: Vec<PriorEntry>,
     /// Where its files are.
     pub(crate) folder: Folder,
+    /// The experiment file and the table of plateaus as they were read.
+    pub(crate) marks: FileMarks,
 }
 
 /// The files of one mounting.
@@ -102,8 +105,7 @@ impl Session {
     /// If the experiment file can not be read or does not follow the form, or makes no sense: every key is
     /// known, every quantity finite and of its dimension, every position a rotation and mounted.
     pub fn read(path: &Path) -> Result<Self, Error> {
-        let file = experiment_file(path);
-        Self::parse_with(&read_text(&file)?, &file, Folder::of(&file), RestTable::read)
+        Self::read_with(path, RestTable::read)
     }
 
     /// [`Session::read`] of a session whose tables of rests need not be there yet: they are not read.
@@ -111,8 +113,17 @@ impl Session {
     /// # Errors
     /// As [`Session::read`].
     pub fn read_before_rests(path: &Path) -> Result<Self, Error> {
+        Self::read_with(path, |_, _| Ok(()))
+    }
+
+    fn read_with(path: &Path, read: impl FnMut(&mut RestTable, &Folder) -> Result<(), Error>) -> Result<Self, Error> {
         let file = experiment_file(path);
-        Self::parse_with(&read_text(&file)?, &file, Folder::of(&file), |_, _| Ok(()))
+        let before = FileMarks::of([file.as_path()]);
+        let session = Self::parse_with(&read_text(&file)?, &file, Folder::of(&file), read)?;
+        before.refuse_changed()?;
+        let table = session.plateaus.iter().flat_map(|table| &table.file);
+        let marks = FileMarks::of(table.chain([&file]).map(PathBuf::as_path));
+        Ok(Self { marks, ..session })
     }
 
     /// The session of an experiment file with this `text`, as if it were `experiment.toml` in `folder`.
@@ -270,6 +281,7 @@ impl Session {
             durations: Vec::new(),
             priors: prior::entries(&form.prior),
             folder,
+            marks: FileMarks::default(),
         })
     }
 }

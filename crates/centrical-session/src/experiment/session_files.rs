@@ -107,6 +107,29 @@ impl Session {
     }
 }
 
+/// Folders above an output in which a session may lie that reads a file there.
+const ABOVE: usize = 3;
+
+/// Refuses outputs over one of `inputs`, or over a file of a session whose records are there: nothing restores them.
+///
+/// # Errors
+/// [`Error`] with the output.
+pub fn refuse_inputs(outputs: &[PathBuf], inputs: &[impl AsRef<Path>]) -> Result<(), Error> {
+    centrical_table::refuse_inputs(outputs, inputs)?;
+    for output in outputs.iter().filter(|output| output.is_file()) {
+        let whole = std::path::absolute(output).unwrap_or_else(|_| output.clone());
+        for folder in whole.ancestors().skip(1).take(ABOVE).filter(|folder| folder.join(EXPERIMENT_FILE).is_file()) {
+            let session = Session::read_before_rests(folder).ok().filter(|session| session.record_bytes() > 0);
+            let files = session.iter().flat_map(Session::files).collect::<Vec<_>>();
+            if centrical_table::refuse_inputs(std::slice::from_ref(output), &files).is_err() {
+                let found = format!("a file of the session in {}", folder.display());
+                return Err(Error::content(output, Place::Whole, found, "another file for the output"));
+            }
+        }
+    }
+    Ok(())
+}
+
 /// Refuses a folder that holds a session.
 ///
 /// # Errors

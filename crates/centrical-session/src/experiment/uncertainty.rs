@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use centrical::{Course, Effect, ErrorModel, Experiment, Kind, Law, Parameter, Rival, TypeB};
+use centrical::{Course, Effect, ErrorModel, Experiment, Kind, Law, Parameter, Rival, SetPoint, TypeB};
 
 use super::speeds::Speeds;
 use super::toml_path::TomlPath;
@@ -86,6 +86,10 @@ fn effects(
     experiment: &Experiment,
     error_model: &ErrorModel,
 ) -> Result<[f64; Rival::COUNT], Error> {
+    // The schedule is read later, and tilts by angle of rest are of two angles at least.
+    let rests = [0.0, std::f64::consts::PI].map(|angle| SetPoint::at_rest(0, angle));
+    let set_points = if experiment.has_arm() { rests.to_vec() } else { Vec::new() };
+    let experiment = &Experiment { set_points, ..experiment.clone() };
     let names: Vec<String> = Rival::COMMON.iter().map(|rival| rival.name().replace('-', "_")).collect();
     let mut bounds = [0.0; Rival::COUNT];
     for (key, quantity) in table.iter().filter(|(key, _)| !is_quantity(key)) {

@@ -43,6 +43,36 @@ pub fn compare_results(
     Ok(ComparisonReport::new(results, pairs.collect::<Result<_, _>>()?))
 }
 
+/// The result in `file` as it stands beside another one of its unit, `other` in `of`: with estimates relative to the nominal raw output of that.
+/// Its covariance and its readings stay as they are.
+///
+/// # Errors
+/// [`Error`] when its output is in another unit.
+pub fn result_beside(
+    mut result: CalibrationResult,
+    file: &Path,
+    other: &CalibrationResult,
+    of: &Path,
+) -> Result<CalibrationResult, Error> {
+    let mut kinds = Kinds::default();
+    let [mut own, other] = [(file, &result), (of, other)].map(|(file, result)| calibrated(file, result, &mut kinds));
+    refuse_other_output(&other, &own)?;
+    let Some(output) = other.output.filter(|output| own.output.as_ref() != Some(output)) else { return Ok(result) };
+    own.restate(&output);
+    let estimates = own.values.into_iter().zip(own.standard_uncertainties);
+    for (parameter, (value, u)) in result.parameters.iter_mut().zip(estimates) {
+        parameter.value = parameter.value.and(Some(value)).filter(|value| value.is_finite());
+        parameter.standard_uncertainty = parameter.standard_uncertainty.and(Some(u)).filter(|u| u.is_finite());
+    }
+    Ok(result)
+}
+
+/// A result as it is compared. Of a session without a day the day does not count.
+fn calibrated(file: &Path, result: &CalibrationResult, kinds: &mut Kinds) -> Calibrated {
+    let date = result.session.date.parse().unwrap_or(Date { year: 1970, month: 1, day: 1 });
+    Calibrated::on(date, file.display().to_string(), result.row(&[]), kinds)
+}
+
 /// The two of a pair, the first relative to the raw output of the second.
 fn pair_of(
     results: &[(&Path, &CalibrationResult)],
@@ -52,15 +82,10 @@ fn pair_of(
     let [first, second] = pair.map(|n| results[n].1);
     let [only_in_first, only_in_second] = [terms_missing(first, second), terms_missing(second, first)];
     let mut kinds = Kinds::default();
-    let [mut a, b] = pair.map(|n| {
-        let (file, result) = results[n];
-        // Of a session without a day the day does not count.
-        let date = result.session.date.parse().unwrap_or(Date { year: 1970, month: 1, day: 1 });
-        Calibrated::on(date, file.display().to_string(), result.row(&[]), &mut kinds)
-    });
+    let [mut a, b] = pair.map(|n| calibrated(results[n].0, results[n].1, &mut kinds));
     refuse_other_output(&a, &b)?;
-    if let Some(output) = b.output.clone() {
-        a.restate(&output);
+    if let Some(output) = &b.output {
+        a.restate(output);
     }
     // A coefficient of the same name may belong to another term.
     let is_common =

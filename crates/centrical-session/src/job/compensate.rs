@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use centrical::reduction::RecordSlice;
 use centrical::{OnProgress, advance};
 use centrical_compensate::{Certificate, Compensation, Outside, Term, UnequalLengths};
-use centrical_table::{Rows, Stamps, refuse_inputs};
+use centrical_table::{Rows, Stamps};
 use rayon::prelude::*;
 
 use super::axes::Axes;
@@ -14,7 +14,7 @@ use crate::document::{
     ResultObjection,
 };
 use crate::error::{Error, Place};
-use crate::experiment::Session;
+use crate::experiment::{Session, refuse_inputs};
 use crate::record::RecordWriter;
 use crate::record::{Columns, RecordReader, stretch};
 
@@ -121,15 +121,16 @@ fn refuse_another(session: &Session, result: &CalibrationResult, file: &Path) ->
     if let Some((what, own, of)) = other {
         return refuse(format!("a unit of the {what} {own:?}"), format!("{of:?}"));
     }
-    match (OutputSummary::of(session), &result.output) {
-        (Some(own), Some(of)) if own != *of && own.is_raw() && of.is_raw() => {
-            let nominal = |output: &OutputSummary| {
-                format!("{} of scale {:?} and bias {:?}", output.unit, output.scale, output.bias)
-            };
-            refuse(nominal(&own), nominal(of))
-        }
-        _ => Ok(()),
+    // The coefficients are relative to the nominal output. All units of acceleration are one.
+    let own = OutputSummary::of(session).filter(OutputSummary::is_raw);
+    let nominal = |output: Option<&OutputSummary>| match output {
+        Some(output) => format!("{} of scale {:?} and bias {:?}", output.unit, output.scale, output.bias),
+        None => "output in a unit of acceleration".to_owned(),
+    };
+    if own.as_ref() == result.raw_output() {
+        return Ok(());
     }
+    refuse(nominal(own.as_ref()), nominal(result.raw_output()))
 }
 
 /// Compensates the record in `input` into `output`, CSV or Parquet by its name. The same bytes on any machine.

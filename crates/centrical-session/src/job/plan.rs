@@ -6,13 +6,12 @@ mod schedule_file;
 use std::path::Path;
 
 use centrical::OnProgress;
-use centrical_table::refuse_inputs;
 
 use self::report::report;
 pub use self::report::{PlanRequest, USUAL_LEVELS, USUAL_TIMES};
 use crate::document::{CalibrationResult, PlanReport};
 use crate::error::Error;
-use crate::experiment::{ExpectedValues, PlannedSession, Planning};
+use crate::experiment::{ExpectedValues, PlannedSession, Planning, refuse_inputs};
 
 /// Plans as a plan file asks, and reports the plan. `progress` is called again and again; it changes nothing but whether the search
 /// goes on.

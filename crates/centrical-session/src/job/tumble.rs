@@ -14,11 +14,11 @@ use super::reduce::{find_rests, is_of_gravity, mean_size, refuse_repeated_rests}
 use crate::document::{CalibrationResult, Method};
 use crate::error::{Error, Place};
 use crate::experiment::{
-    ASKEW, EXPERIMENT_FILE, Folder, MOST_DISTANT, RAW_OUTPUT, RestSource, Session, StatedAttitudes, Turning,
+    ASKEW, EXPERIMENT_FILE, FileMarks, Folder, MOST_DISTANT, RAW_OUTPUT, RestSource, Session, StatedAttitudes, Turning,
     misalignments_left_out, refuse_another_session, write_attitudes, write_plateaus,
 };
 use crate::quantity::{Date, NotThatQuantity, Quantity};
-use crate::record::{EqualColumns, Input, RECORD, Scale, named_columns};
+use crate::record::{EqualColumns, Input, RECORD, Scale, named_columns, refuse_years};
 use crate::reduced::{Reduced, ReducedPlateau, rest_rows};
 use crate::settings::toml_text;
 use crate::units::Dimension;
@@ -130,6 +130,7 @@ pub struct Tumble {
 /// # Errors
 /// [`Error`] naming the file, the place, what was found and what was expected; [`Error::Stopped`].
 pub fn tumble(request: &TumbleRequest, folder: &Path, progress: OnProgress) -> Result<Tumble, Error> {
+    let before = FileMarks::of(request.inputs());
     let mut records = Vec::with_capacity(request.files.len());
     for file in &request.files {
         let record = record(request, file, progress)?;
@@ -165,6 +166,7 @@ pub fn tumble(request: &TumbleRequest, folder: &Path, progress: OnProgress) -> R
     };
     let inputs = request.inputs().map(input);
     reduced.inputs = inputs.collect::<Result<_, _>>()?;
+    before.refuse_changed()?;
     refuse_twice(request, &reduced.inputs)?;
     let session = Session::parse_with(&text, &folder.join(EXPERIMENT_FILE), Folder::at(folder), |table, _| {
         table.means = rest_rows(&reduced.plateaus);
@@ -236,6 +238,7 @@ fn record(request: &TumbleRequest, file: &Path, progress: OnProgress) -> Result<
     let mut equal = EqualColumns::of(request.readings.each_ref().map(ToString::to_string));
     equal.see(record.as_slice().f_z);
     equal.refuse(file)?;
+    record.t.first().zip(record.t.last()).map_or(Ok(()), |(from, to)| refuse_years(file, [*from, *to]))?;
     Ok(record)
 }
 

@@ -112,15 +112,18 @@ impl NullSpace<'_> {
         echelon.row_iter().map(|row| self.cleaned(row.transpose())).collect()
     }
 
-    /// Replaces a vector by its sum with a multiple of another as long as that has fewer terms.
+    /// Replaces a vector by its sum with a multiple of another as long as that has fewer terms. What a sum cancels may come back when it is made
+    /// anew: counted there, the terms of all vectors become fewer with each step, and the steps end.
     fn sparsen(&self, vectors: &mut [DVector<f64>]) {
         let mut improved = true;
         while improved {
             improved = false;
             for i in 0..vectors.len() {
                 for j in (0..vectors.len()).filter(|&j| j != i) {
-                    if let Some(factor) = self.best_factor(&vectors[i], &vectors[j]) {
-                        vectors[i] = self.cleaned(&vectors[i] - &vectors[j] * factor);
+                    let Some(factor) = self.best_factor(&vectors[i], &vectors[j]) else { continue };
+                    let sum = self.cleaned(&vectors[i] - &vectors[j] * factor);
+                    if count_terms(&sum) < count_terms(&vectors[i]) {
+                        vectors[i] = sum;
                         improved = true;
                     }
                 }
@@ -134,7 +137,7 @@ impl NullSpace<'_> {
         let terms = |factor: f64| a.iter().zip(b).filter(|(x, y)| !self.cancels(**x, factor * **y)).count();
         let factors = common.map(|p| a[p] / b[p]).map(|factor| (terms(factor), factor));
         let (fewest, factor) = factors.min_by_key(|(count, _)| *count)?;
-        (fewest < a.iter().filter(|c| **c != 0.0).count()).then_some(factor)
+        (fewest < count_terms(a)).then_some(factor)
     }
 
     /// Whether `x - y` is nothing but rounding.
@@ -164,6 +167,10 @@ impl NullSpace<'_> {
         let largest = exact.amax();
         if largest > 0.0 { exact / largest } else { v }
     }
+}
+
+fn count_terms(v: &DVector<f64>) -> usize {
+    v.iter().filter(|c| **c != 0.0).count()
 }
 
 /// As many independent rows as there are columns, the longest remaining one each time, the first of equally long
