@@ -5,17 +5,13 @@ use super::statement::Language;
 
 /// The header.
 pub(super) fn header(model: &Model) -> String {
-    let raw = model.of_raw(RAW_HEADER, &DOUBLE);
-    model.fill(include_str!("compensate.h.in"), &DOUBLE).replace("@raw@", &raw)
+    model.fill(include_str!("compensate.h.in"), &DOUBLE)
 }
 
 /// The source: the same text once for each precision, then the test vectors.
 pub(super) fn source(model: &Model) -> String {
     let body = |c: &C| {
         let text = model.fill(include_str!("compensate_body.c.in"), c);
-        let text = text.replace("@raw@", &model.of_raw(RAW_SOURCE, c));
-        let text = text.replace("@axes@", &model.in_axes(AXES, "", c));
-        let text = text.replace("@turned@", &model.in_axes(TURNED, "x[i]", c));
         text.replace("@real@", c.real).replace("@name@", c.name).replace("@literal@", c.literal)
     };
     let row = |reading: &str, f: &str| format!("    {{{{{reading}}}, {{{f}}}}},");
@@ -23,53 +19,9 @@ pub(super) fn source(model: &Model) -> String {
         .fill(include_str!("compensate.c.in"), &DOUBLE)
         .replace("@double@", &body(&DOUBLE))
         .replace("@single@", &body(&SINGLE))
-        .replace("@raw_test@", &model.of_raw(RAW_TEST, &DOUBLE))
         .replace("@vectors@", &vector_rows(model, &DOUBLE, row))
         .replace("@outside@", &outside_range(model, &DOUBLE))
 }
-
-/// Declarations of the header for a unit in counts or volts.
-const RAW_HEADER: &str = "
-/*
- * The same of the raw output of the unit in @raw_unit@, by its nominal scale (@raw_scale@) per m/s^2
- * and bias (@raw_bias@).
- */
-int centrical_compensate_raw(const double raw[3], double f[3]);
-int centrical_compensate_raw_float(const float raw[3], float f[3]);
-";
-
-/// Definitions for a unit in counts or volts, once for each precision: its raw output is taken to readings first.
-const RAW_SOURCE: &str = "
-int centrical_compensate_raw@name@(const @real@ raw[3], @real@ f[3]) {
-    static const @real@ scale[3] = {@raw_scale@}, raw_bias[3] = {@raw_bias@};
-    @real@ reading[3];
-    int i;
-    for (i = 0; i < 3; i++) { reading[i] = (raw[i] - raw_bias[i]) / scale[i]; }
-    return centrical_compensate@name@(reading, f);
-}
-";
-
-/// A part of the self-test of such a unit: the vectors again, as raw output.
-const RAW_TEST: &str = "
-    for (n = 0; n < count; n++) {
-        static const double scale[3] = {@raw_scale@}, raw_bias[3] = {@raw_bias@};
-        double raw[3];
-        for (i = 0; i < 3; i++) { raw[i] = vectors[n][0][i] * scale[i] + raw_bias[i]; }
-        failures += centrical_compensate_raw(raw, f) != 0 || !agrees(f, vectors[n], 1e-9);
-    }";
-
-/// Constant of a result in other axes, once for each precision.
-const AXES: &str = "
-/* From the axes of specific forces to those of the newtonometers, by rows. */
-static const @real@ axes@name@[3][3] = {
-    {@axes_1@},
-    {@axes_2@},
-    {@axes_3@},
-};
-";
-
-/// Component `i` of a specific force in them.
-const TURNED: &str = "axes@name@[0][i] * x[0] + axes@name@[1][i] * x[1] + axes@name@[2][i] * x[2]";
 
 /// C in one precision.
 struct C {

@@ -18,9 +18,13 @@ impl Model<'_> {
     /// Fills what all templates have in common.
     pub fn fill(&self, template: &str, language: &dyn Language) -> String {
         let linear = self.compensation.linear();
-        let row = |numbers: &[f64]| numbers.iter().map(|x| language.number(*x)).collect::<Vec<_>>().join(", ");
+        let row = |numbers: &[f64; 3]| numbers.map(|x| language.number(x)).join(", ");
+        let rows = |text: String, name: &str, matrix: &[[f64; 3]; 3]| {
+            (0..3).fold(text, |text, i| text.replace(&format!("@{name}_{}@", i + 1), &row(&matrix[i])))
+        };
         let steps = self.compensation.certificate().newton_steps(0.5 * language.epsilon());
-        let filled = template
+        let mut text = self
+            .sections(template)
             .replace("@heading@", &self.heading(language.comment()))
             .replace("@range@", &language.number(self.range()))
             .replace("@start_region@", &language.number(centrical_compensate::START_REGION))
@@ -29,26 +33,34 @@ impl Model<'_> {
             .replace("@coefficients@", &statement::coefficients(language, self.terms))
             .replace("@statements@", &statement::error_and_gain(language, self.terms))
             .replace("@bias@", &row(&linear.bias));
-        let inverse = linear.inverse.iter().enumerate();
-        inverse.fold(filled, |text, (i, numbers)| text.replace(&format!("@inverse_{}@", i + 1), &row(numbers)))
+        text = rows(text, "inverse", &linear.inverse);
+        if let Some(matrix) = self.compensation.axes() {
+            text = rows(text, "axes", matrix);
+        }
+        if let Some(OutputSummary { unit, scale, bias }) = self.output {
+            text = text.replace("@raw_unit@", &harmless(unit));
+            text = text.replace("@raw_scale@", &row(scale)).replace("@raw_bias@", &row(bias));
+        }
+        text
     }
 
-    /// A template for a unit with raw output of its own, filled; nothing for another.
-    pub fn of_raw(&self, template: &str, language: &dyn Language) -> String {
-        let Some(OutputSummary { unit, scale, bias }) = self.output else { return String::new() };
-        let row = |numbers: &[f64; 3]| numbers.map(|x| language.number(x)).join(", ");
-        template
-            .replace("@raw_unit@", &harmless(unit))
-            .replace("@raw_scale@", &row(scale))
-            .replace("@raw_bias@", &row(bias))
-    }
-
-    /// A template for specific forces in other axes, filled; `otherwise` for those of the newtonometers.
-    pub fn in_axes(&self, template: &str, otherwise: &str, language: &dyn Language) -> String {
-        let Some(matrix) = self.compensation.axes() else { return otherwise.to_owned() };
-        let row = |numbers: &[f64; 3]| numbers.map(|x| language.number(x)).join(", ");
-        let rows = matrix.iter().enumerate();
-        rows.fold(template.to_owned(), |text, (i, numbers)| text.replace(&format!("@axes_{}@", i + 1), &row(numbers)))
+    /// A template without its sections, from a line `@if CONDITION@` to `@end@`, that do not hold: `raw` for a unit with raw output of its
+    /// own, `axes` for specific forces in other axes than the newtonometers'.
+    fn sections(&self, template: &str) -> String {
+        let (has_raw, has_axes) = (self.output.is_some(), self.compensation.axes().is_some());
+        let (mut kept, mut is_kept) = (String::new(), true);
+        for line in template.split_inclusive('\n') {
+            match line.trim_end() {
+                "@if raw@" => is_kept = has_raw,
+                "@if not raw@" => is_kept = !has_raw,
+                "@if axes@" => is_kept = has_axes,
+                "@if not axes@" => is_kept = !has_axes,
+                "@end@" => is_kept = true,
+                _ if is_kept => kept.push_str(line),
+                _ => {}
+            }
+        }
+        kept
     }
 
     /// Range of the compensation [m/s^2].
