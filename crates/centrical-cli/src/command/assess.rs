@@ -45,5 +45,5 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let assessment = progress::reading(&session, arguments.printing, |progress| assess(&session, &request, progress))?;
     let text = || assessment_text(&assessment, arguments.coverage, arguments.correlations);
     arguments.printing.show(text, || assessment.report(arguments.coverage).to_json())?;
-    Ok(Outcome::acceptable(assessment.objections.is_empty()))
+    Ok(Outcome::acceptable(assessment.result.objections().is_empty()))
 }

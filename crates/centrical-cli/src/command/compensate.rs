@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
-use centrical_report::{compensation_text, verdict_text};
-use centrical_session::{Axes, CompensationRequest, Error, Redundancy, compensate, unwatched};
+use centrical_report::{compensation_text, objections_text};
+use centrical_session::{Axes, CompensationRequest, Error, compensate, unwatched};
 
 use crate::given::acceleration;
 use crate::output::{Outcome, Printing};
@@ -52,9 +52,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let (compensated, certificate, objections) = compensate(&request, &unwatched)?;
     let text = || {
         let mut screen = compensation_text(&compensated, &certificate, &arguments.out);
-        if !objections.is_empty() {
-            screen.add(verdict_text(&objections, Redundancy::Everywhere));
-        }
+        screen.add(objections_text(&objections));
         screen
     };
     arguments.printing.show(text, || compensated.report(&request, &certificate, &objections).to_json())?;

@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use centrical_report::{
-    DocumentRequest, Emphasis, Screen, UnitStatement, certificates_in, read_issuer, result_text, unit_text,
-    verdict_text, write_all_documents, write_documents,
+    DocumentRequest, Emphasis, Screen, UnitStatement, certificates_in, objections_text, read_issuer, result_text,
+    unit_text, write_all_documents, write_documents,
 };
 use centrical_session::{Axes, CalibrationResult, DocumentsReport, Error, Place};
 
@@ -138,8 +138,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let objections = result.objections();
     let is_within = is_within_limits(unit.as_ref());
     let text = || {
-        let mut screen =
-            if objections.is_empty() { Screen::default() } else { verdict_text(&objections, result.redundancy()) };
+        let mut screen = objections_text(&objections);
         screen.add(unit.as_ref().filter(|_| !is_within).map(unit_text).unwrap_or_default());
         screen
     };

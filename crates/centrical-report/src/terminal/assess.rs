@@ -2,7 +2,7 @@
 
 use centrical::uncertainty::{Budget, CurvePoint, Degrees, Level, Pattern, Validity};
 use centrical::{Experiment, Fit, MeasurementModel, Parameter, Parameters, STANDARD_GRAVITY};
-use centrical_session::{Assessment, MICRO_G, PatternSummary, Redundancy, customary, rpm};
+use centrical_session::{Assessment, MICRO_G, PatternSummary, customary, rpm};
 
 use super::phrases::{legend, pattern_in_words};
 use super::screen::Screen;
@@ -12,7 +12,7 @@ use crate::number::{counted, two_digits, unsigned_zero};
 
 /// The whole assessment, expanded uncertainties for a probability of `coverage`; the correlations if they are wanted.
 pub fn assessment_text(assessment: &Assessment, coverage: f64, correlations: bool) -> Screen {
-    let Assessment { model, fit, cleaned, budget, validity, patterns, prediction, objections, .. } = assessment;
+    let Assessment { model, fit, cleaned, budget, validity, patterns, prediction, result, .. } = assessment;
     let mut screen = Screen::default();
     if let Some((after, left_out)) = cleaned {
         outliers_text(&mut screen, model, [fit, after], left_out);
@@ -31,9 +31,7 @@ pub fn assessment_text(assessment: &Assessment, coverage: f64, correlations: boo
         None => screen.head("PREDICTION", "none: not all parameters of the instrument are determined"),
     }
     screen.gap();
-    let used = cleaned.as_ref().map_or(fit, |(after, _)| after);
-    let unchecked: Vec<String> = validity.unchecked.iter().map(|j| model.parameters()[*j].name.clone()).collect();
-    screen.add(verdict_text(objections, Redundancy::of(used.degrees_of_freedom, &unchecked)));
+    screen.add(verdict_text(result));
     screen
 }
 

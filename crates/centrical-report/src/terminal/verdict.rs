@@ -12,7 +12,7 @@ use crate::number::counted;
 
 /// The verdicts, the result that they are of, and a last line if one is `said`.
 pub fn result_text(result: &CalibrationResult, unit: Option<&UnitStatement>, said: Option<&str>) -> Screen {
-    let mut screen = verdict_text(&result.objections(), result.redundancy());
+    let mut screen = verdict_text(result);
     screen.add(unit.map(unit_text).unwrap_or_default());
     screen.gap();
     screen.add(table_of(result));
@@ -24,28 +24,35 @@ pub fn result_text(result: &CalibrationResult, unit: Option<&UnitStatement>, sai
 }
 
 /// The verdict in a line, or one for each objection; said again below a text that is longer than a screen.
-pub fn verdict_text(objections: &[ResultObjection], redundancy: Redundancy) -> Screen {
+pub(super) fn verdict_text(result: &CalibrationResult) -> Screen {
     /// Parameters that are named.
     const NAMED: usize = 9;
-    let mut screen = Screen::default();
-    if objections.is_empty() {
-        let words = match redundancy {
-            Redundancy::Everywhere => "no check raised an objection".to_owned(),
-            Redundancy::ButFor(parameters) => {
-                let names = short_list(parameters, NAMED, ", ");
-                format!("but no redundant reading checks {names}")
-            }
-            Redundancy::Nowhere => "but no reading is redundant: nothing checks the stated uncertainties".to_owned(),
-        };
-        screen.marked(Emphasis::Acceptable, "ACCEPTABLE", &words);
-        screen.close(Emphasis::Acceptable, "ACCEPTABLE", &words);
+    let mut screen = objections_text(&result.objections());
+    if !screen.parts().is_empty() {
         return screen;
     }
+    let words = match result.redundancy() {
+        Redundancy::Everywhere => "no check raised an objection".to_owned(),
+        Redundancy::ButFor(parameters) => {
+            format!("but no redundant reading checks {}", short_list(parameters, NAMED, ", "))
+        }
+        Redundancy::Nowhere => "but no reading is redundant: nothing checks the stated uncertainties".to_owned(),
+    };
+    screen.marked(Emphasis::Acceptable, "ACCEPTABLE", &words);
+    screen.close(Emphasis::Acceptable, "ACCEPTABLE", &words);
+    screen
+}
+
+/// The verdict of these objections: empty without any.
+pub fn objections_text(objections: &[ResultObjection]) -> Screen {
+    let mut screen = Screen::default();
     for reason in objections {
         screen.marked(Emphasis::NotAcceptable, "NOT ACCEPTABLE", &objection(reason, Language::English));
     }
-    let reasons = format!("for {}, in the first lines", counted(objections.len(), "reason"));
-    screen.close(Emphasis::NotAcceptable, "NOT ACCEPTABLE", &reasons);
+    if !objections.is_empty() {
+        let reasons = format!("for {}, in the first lines", counted(objections.len(), "reason"));
+        screen.close(Emphasis::NotAcceptable, "NOT ACCEPTABLE", &reasons);
+    }
     screen
 }
 

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::documents::ObjectionName;
 use super::json::finite_degrees;
-use super::result::{BudgetSummary, Program, ResultObjection, ValiditySummary};
+use super::result::{BudgetSummary, CalibrationResult, Program, ValiditySummary};
 use crate::experiment::PlateauName;
 
 /// Name of the schema's present version.
@@ -148,8 +148,6 @@ pub struct CompensatedUncertainty {
 /// How far a calibration can be trusted.
 #[derive(Debug)]
 pub struct Assessment {
-    /// Title of the session.
-    pub title: String,
     /// Whether the noise and the speed of the plateaus are scaled by the residuals.
     pub scaled_by_residuals: bool,
     /// The model.
@@ -167,14 +165,15 @@ pub struct Assessment {
     pub patterns: Vec<Pattern>,
     /// Uncertainty of a compensated reading along each instrument axis; `None` while a coefficient is not determined.
     pub prediction: Option<[Vec<CurvePoint>; 3]>,
-    /// The objections to the calibration that the above rests on, as [`calibrate`](crate::calibrate()) has them.
-    pub objections: Vec<ResultObjection>,
+    /// The calibration that the above rests on, as [`calibrate`](crate::calibrate()) has it.
+    pub result: CalibrationResult,
 }
 
 impl Assessment {
     /// The assessment as a document, expanded uncertainties for a probability of `coverage`.
     pub fn report(&self, coverage: f64) -> AssessmentReport {
-        let Self { model, fit, cleaned, budget, validity, patterns, prediction, objections, .. } = self;
+        let Self { model, fit, cleaned, budget, validity, patterns, prediction, result, .. } = self;
+        let objections = result.objections();
         let (experiment, parameters) = (model.experiment(), model.parameters());
         let count = parameters.len();
         let used = cleaned.as_ref().map_or(fit, |(without, _)| without);
@@ -190,7 +189,7 @@ impl Assessment {
         AssessmentReport {
             schema: ASSESSMENT_SCHEMA,
             program: Program::this(),
-            title: self.title.clone(),
+            title: result.session.title.clone(),
             coverage,
             scaled_by_residuals: self.scaled_by_residuals,
             fit: AssessedFit::of(fit),

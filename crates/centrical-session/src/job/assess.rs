@@ -38,25 +38,14 @@ pub fn assess(session: &Session, request: &AssessmentRequest, progress: OnProgre
     let left_out = cleaned.as_ref().map_or(&[][..], |cleaned| &cleaned.left_out);
     let used = without.as_ref().unwrap_or(&whole);
     reduced.held_out = left_out.iter().map(|(set_point, _)| *set_point).collect();
-    let objections = as_result(used, &session, &reduced, progress)?.objections();
+    let result = as_result(used, &session, &reduced, progress)?;
     let (budget, validity, patterns) = checks(used, request).map_err(failed)?;
     let range = request.range.unwrap_or_else(|| highest(used.data()));
     let prediction = prediction(&model, used.fit(), &budget, range);
     let cleaned = without.as_ref().map(|without| (without.fit().clone(), left_out.to_vec()));
     let fit = whole.into_fit();
-    let (title, scaled_by_residuals) = (session.title, request.scale_by_residuals);
-    Ok(Assessment {
-        title,
-        scaled_by_residuals,
-        model,
-        fit,
-        cleaned,
-        budget,
-        validity,
-        patterns,
-        prediction,
-        objections,
-    })
+    let scaled_by_residuals = request.scale_by_residuals;
+    Ok(Assessment { scaled_by_residuals, model, fit, cleaned, budget, validity, patterns, prediction, result })
 }
 
 /// The budget of the fit that is assessed, whether its residuals are those of a true model, and their patterns.

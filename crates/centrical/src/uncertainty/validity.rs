@@ -8,10 +8,10 @@
 //! is the fall of chi^2 when the block is left out: chi^2 of as many degrees of freedom as the block has redundant
 //! readings. Divided by the remaining chi^2 it is an F statistic that does not depend on the scale of the weights.
 
-use nalgebra::{DMatrix, DVector, SymmetricEigen, Vector3};
+use nalgebra::{DMatrix, DMatrixView, DVector, SymmetricEigen, Vector3};
 
 use super::rivals::chance_of_explaining;
-use crate::fit::{Calibration, Data, Gain};
+use crate::fit::{Calibration, Data};
 use crate::model::{FitError, Observation};
 use crate::progress::{OnProgress, advance, unwatched};
 use crate::statistics::chi_squared_tail;
@@ -34,8 +34,6 @@ pub struct Validity {
     pub plateaus: Vec<PlateauCheck>,
     /// Each mounting that has observations, by its index, and how well the others predict it.
     pub mountings: Vec<(usize, LeftOutPrediction)>,
-    /// Parameters of the instrument that rest on readings which no other reading checks: errors of these readings move them and leave no residual.
-    pub unchecked: Vec<usize>,
 }
 
 /// The check of one plateau.
@@ -99,16 +97,20 @@ impl Calibration<'_> {
             probability: chi_squared_tail(fit.chi_squared, fit.degrees_of_freedom),
             plateaus: (0..observations.len()).map(|n| blocks.plateau(n, observations[n].set_point)).collect(),
             mountings: mountings.collect(),
-            unchecked: self.unchecked(&blocks, gain),
         })
     }
 
-    /// Parameters of the instrument with more than half of their variance from readings that no other reading checks.
-    fn unchecked(&self, blocks: &Blocks, gain: &Gain) -> Vec<usize> {
+    /// Parameters of the instrument with more than half of their variance from readings which no other reading checks: errors of these
+    /// readings move them and leave no residual.
+    ///
+    /// # Errors
+    /// [`FitError`] when numbers overflow.
+    pub fn unchecked(&self) -> Result<Vec<usize>, FitError> {
+        let gain = self.gain()?;
         let (fit, parameters) = (self.fit(), self.data().model().parameters());
         let mut variances = vec![0.0; parameters.len()];
         for n in 0..self.data().observations().len() {
-            let followed = blocks.followed_alone(n);
+            let followed = followed_alone(gain.basis().rows(3 * n, 3));
             if followed.ncols() > 0 {
                 let shifts = gain.shifts(&followed);
                 variances.iter_mut().zip(shifts.row_iter()).for_each(|(sum, shift)| *sum += shift.norm_squared());
@@ -118,7 +120,7 @@ impl Calibration<'_> {
             let u = fit.standard_uncertainty(j).filter(|_| parameters[j].is_of_instrument());
             u.is_some_and(|u| variances[j] > MOSTLY * u * u)
         };
-        (0..parameters.len()).filter(is_unchecked).collect()
+        Ok((0..parameters.len()).filter(is_unchecked).collect())
     }
 
     /// chi^2 of a fit of the same data whose noise has `times` the variance. What is stated of attitudes and speeds stays.
@@ -206,14 +208,6 @@ impl Blocks<'_> {
         PlateauCheck { set_point, standardised, leverage, prediction: self.predict(&[n]) }
     }
 
-    /// `Q_b^T v` of the directions `v` of an observation's readings in which no other reading checks them.
-    fn followed_alone(&self, n: usize) -> DMatrix<f64> {
-        let rows = self.basis.rows(3 * n, 3);
-        let eigen = SymmetricEigen::new(DMatrix::identity(3, 3) - rows * rows.transpose());
-        let unchecked: Vec<usize> = (0..3).filter(|i| eigen.eigenvalues[*i] < CHECKED).collect();
-        rows.transpose() * eigen.eigenvectors.select_columns(&unchecked)
-    }
-
     /// The readings of the observations `members` from all others, along the principal directions of `E - H_bb`; those
     /// in which nothing is redundant are left out.
     fn predict(&self, members: &[usize]) -> LeftOutPrediction {
@@ -237,6 +231,13 @@ impl Blocks<'_> {
         let probability = chance_of_explaining(statistic, degrees_of_freedom, self.chi_squared - statistic, left);
         LeftOutPrediction { statistic, degrees_of_freedom, score, probability }
     }
+}
+
+/// `Q_b^T v` of the directions `v` of an observation's readings, with these rows of the basis, in which no other reading checks them.
+fn followed_alone(rows: DMatrixView<f64>) -> DMatrix<f64> {
+    let eigen = SymmetricEigen::new(DMatrix::identity(3, 3) - rows * rows.transpose());
+    let unchecked: Vec<usize> = (0..3).filter(|i| eigen.eigenvalues[*i] < CHECKED).collect();
+    rows.transpose() * eigen.eigenvectors.select_columns(&unchecked)
 }
 
 /// The principal directions of `E - H_bb = E - Q_b Q_b^T` of a block.

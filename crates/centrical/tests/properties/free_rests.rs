@@ -318,8 +318,8 @@ fn biases_and_scales_of_one_visit_to_each_face_are_unchecked() {
         let mut random = Random::new(33);
         let truth = truth(&model, 1.0, &mut random);
         let data = Data::new(&model, observed(&model, &truth, &mut random)).unwrap();
-        let validity = Calibration::exact(&data).unwrap().validity().unwrap();
-        validity.unchecked.iter().map(|j| model.parameters()[*j].name.clone()).collect()
+        let unchecked = Calibration::exact(&data).unwrap().unchecked().unwrap();
+        unchecked.iter().map(|j| model.parameters()[*j].name.clone()).collect()
     };
     let once = faces();
     assert_eq!(unchecked(&once), ["df_1", "df_2", "df_3", "G0_11", "G0_22", "G0_33"]);

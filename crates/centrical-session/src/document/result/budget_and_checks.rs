@@ -213,10 +213,9 @@ impl ValiditySummary {
             Some(first) => calibration.patterns_beside(rivals, first.rival)?,
             None => calibration.patterns()?,
         };
-        let validity = calibration.validity()?;
-        let checks = Self::new(experiment, &validity, &patterns);
+        let checks = Self::new(experiment, &calibration.validity()?, &patterns);
         let parameters = calibration.data().model().parameters();
-        let unchecked = validity.unchecked.iter().map(|j| parameters[*j].name.clone()).collect();
+        let unchecked = calibration.unchecked()?.into_iter().map(|j| parameters[j].name.clone()).collect();
         let of_strongest_noise = noise_at_most.map(|times| calibration.chi_squared_of_noise(times)).transpose()?;
         let (rivals_tested, rivals) = (suspects.tested, RivalSummary::all(&suspects, experiment));
         Ok(Self { noise_at_most, of_strongest_noise, rivals_tested, rivals, unchecked, ..checks })

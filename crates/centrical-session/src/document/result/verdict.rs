@@ -30,17 +30,6 @@ pub enum Redundancy<'r> {
     Nowhere,
 }
 
-impl<'r> Redundancy<'r> {
-    /// Of a fit with some degrees of freedom and parameters that nothing checks.
-    pub fn of(degrees_of_freedom: usize, unchecked: &'r [String]) -> Self {
-        match (degrees_of_freedom, unchecked) {
-            (0, _) => Self::Nowhere,
-            (_, []) => Self::Everywhere,
-            (_, unchecked) => Self::ButFor(unchecked),
-        }
-    }
-}
-
 impl CalibrationResult {
     /// The objections to the result; empty if it is acceptable.
     pub fn objections(&self) -> Vec<ResultObjection> {
@@ -81,8 +70,11 @@ impl CalibrationResult {
 
     /// How far redundant readings check the result.
     pub fn redundancy(&self) -> Redundancy<'_> {
-        let unchecked = self.validity.as_ref().map_or(&[][..], |validity| &validity.unchecked);
-        Redundancy::of(self.fit.degrees_of_freedom, unchecked)
+        match self.validity.as_ref().map_or(&[][..], |validity| &validity.unchecked) {
+            _ if self.fit.degrees_of_freedom == 0 => Redundancy::Nowhere,
+            [] => Redundancy::Everywhere,
+            unchecked => Redundancy::ButFor(unchecked),
+        }
     }
 
     /// Whether chi^2 is smaller than chance allows: the stated uncertainties are too large then.
