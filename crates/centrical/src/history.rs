@@ -33,5 +33,5 @@ pub use outlying::UnitDistance;
 pub use quantiles::Quantiles;
 pub use series::{Point, Series};
 pub use station::{Reading, StationTest};
-pub use together::{FarthestSession, Sameness, SessionEstimates};
+pub use together::{FarthestSession, Sameness};
 pub use units::{BatchTest, Capability, Index, UnitTrend};

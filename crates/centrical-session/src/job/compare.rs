@@ -130,15 +130,10 @@ fn same_files(first: &CalibrationResult, second: &CalibrationResult) -> usize {
 fn differences(pair: &[&Calibrated; 2], names: &[String]) -> Comparison {
     let changes = shared_changes(pair, names, |_| true);
     let unlike = &changes[1] - &changes[0];
-    let own = |c: &Calibrated| c.own_estimates(names).unwrap_or_else(|| (DVector::zeros(0), DMatrix::zeros(0, 0)));
-    let [first, second] = pair.map(own);
-    let estimates = |(values, covariance): (DVector<f64>, DMatrix<f64>)| Estimates {
-        names: names.to_vec(),
-        values: values.as_slice().to_vec(),
-        covariance,
-    };
-    let second = (second.0, second.1 + &unlike * unlike.transpose());
-    estimates(first).compare(&estimates(second))
+    let nothing = || Estimates { values: DVector::zeros(0), covariance: DMatrix::zeros(0, 0) };
+    let [first, mut second] = pair.map(|calibrated| calibrated.own_estimates(names).unwrap_or_else(nothing));
+    second.covariance += &unlike * unlike.transpose();
+    Comparison::of(names, [&first, &second])
 }
 
 /// Years between the dates of two sessions, if both are days.

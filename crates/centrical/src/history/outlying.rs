@@ -22,9 +22,9 @@ use self::component::{Component, Known};
 use self::corrected::UnitSessions;
 use self::means::UnitMeans;
 use self::rows::Rows;
-use super::together::SessionEstimates;
 use crate::statistics::Random;
 use crate::statistics::chi_squared_tail;
+use crate::uncertainty::Estimates;
 
 /// One unit against the others.
 #[derive(Debug, Clone, PartialEq)]
@@ -46,7 +46,7 @@ impl UnitDistance {
     /// parameter does not vary. The same `seed` gives the same probabilities on any number of threads.
     pub fn of_all(
         counts: &[usize],
-        session: &(dyn Fn(usize, usize) -> SessionEstimates + Sync),
+        session: &(dyn Fn(usize, usize) -> Estimates + Sync),
         seed: u64,
     ) -> Option<Vec<Self>> {
         if counts.len() < Self::FEWEST_UNITS {

@@ -6,15 +6,7 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::linalg::least_squares::LeastSquares;
 use crate::statistics::{chi_squared_tail, f_tail};
-
-/// The estimates of one session.
-#[derive(Debug, Clone, PartialEq)]
-pub struct SessionEstimates {
-    /// Values.
-    pub values: DVector<f64>,
-    /// Covariance of the errors that belong to this session alone.
-    pub covariance: DMatrix<f64>,
-}
+use crate::uncertainty::Estimates;
 
 /// Whether the unit was the same in all sessions.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -50,7 +42,7 @@ impl Sameness {
     /// `quantities` has for each session the numbers of the quantities that its values are of, `0..p`, each of two sessions or more. `shared` has a
     /// matrix for each session: the changes of its values by errors that some sessions share, a column for each of `m` independent errors at one
     /// standard uncertainty, zero where a session does not have it. They are unknowns, each `0 +- 1`.
-    pub fn of(sessions: &[SessionEstimates], quantities: &[Vec<usize>], shared: &[DMatrix<f64>]) -> Option<Sameness> {
+    pub fn of(sessions: &[Estimates], quantities: &[Vec<usize>], shared: &[DMatrix<f64>]) -> Option<Sameness> {
         let p = 1 + *quantities.iter().flatten().max()?;
         let m = shared.first().map_or(0, DMatrix::ncols);
         let blocks = blocks(sessions);
@@ -101,9 +93,9 @@ impl Sameness {
 }
 
 /// The equations of each session.
-fn blocks(sessions: &[SessionEstimates]) -> Vec<Range<usize>> {
+fn blocks(sessions: &[Estimates]) -> Vec<Range<usize>> {
     let mut end = 0;
-    let block = |session: &SessionEstimates| {
+    let block = |session: &Estimates| {
         let start = end;
         end += session.values.len();
         start..end
@@ -112,7 +104,7 @@ fn blocks(sessions: &[SessionEstimates]) -> Vec<Range<usize>> {
 }
 
 /// The size of each unknown: its standard uncertainty in the first session that has it.
-fn sizes(sessions: &[SessionEstimates], quantities: &[Vec<usize>], p: usize) -> DVector<f64> {
+fn sizes(sessions: &[Estimates], quantities: &[Vec<usize>], p: usize) -> DVector<f64> {
     let mut sizes = DVector::repeat(p, 1.0);
     for (session, quantities) in sessions.iter().zip(quantities).rev() {
         for (i, &quantity) in quantities.iter().enumerate() {

@@ -8,21 +8,19 @@ use nalgebra::{DMatrix, DVector};
 use super::verdict::Level;
 use crate::statistics::chi_squared_tail;
 
-/// The estimates of one calibration that are determined.
+/// The estimates of one calibration.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Estimates {
-    /// Names of the parameters.
-    pub names: Vec<String>,
     /// Values, SI.
-    pub values: Vec<f64>,
-    /// Covariance of the errors that the other calibration does not share, SI.
+    pub values: DVector<f64>,
+    /// Covariance of the errors that belong to this calibration alone, SI.
     pub covariance: DMatrix<f64>,
 }
 
 /// Calibration B less calibration A.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Comparison {
-    /// Parameters that both determine, in the order of A.
+    /// By parameter.
     pub differences: Vec<ParameterDifference>,
     /// `d^T (C_A + C_B)^-1 d` of all of them; `None` if the sum is not positive definite.
     pub chi_squared: Option<f64>,
@@ -54,44 +52,33 @@ impl ParameterDifference {
     }
 }
 
+/// Coverage factor of the expanded uncertainties in `E_n` (ISO 13528, 9.7).
+const COVERAGE_FACTOR: f64 = 2.0;
+
 impl Comparison {
+    /// Of estimates of the parameters `names`: the second less the first.
+    pub fn of(names: &[String], [first, second]: [&Estimates; 2]) -> Self {
+        let covariance = &first.covariance + &second.covariance;
+        let parameter = |(n, name): (usize, &String)| {
+            let (difference, standard_uncertainty) = (second.values[n] - first.values[n], covariance[(n, n)].sqrt());
+            let e_n = difference / (COVERAGE_FACTOR * standard_uncertainty);
+            let square = (difference / standard_uncertainty).powi(2);
+            let alone = if difference == 0.0 { 1.0 } else { chi_squared_tail(square, 1) };
+            let probability = (names.len() as f64 * alone).min(1.0);
+            ParameterDifference { name: name.clone(), difference, standard_uncertainty, e_n, probability }
+        };
+        let differences: Vec<ParameterDifference> = names.iter().enumerate().map(parameter).collect();
+        let chi_squared = weighted_square(differences.iter().map(|d| d.difference), &covariance);
+        let probability = chi_squared.map(|chi_squared| chi_squared_tail(chi_squared, names.len()));
+        Self { differences, chi_squared, probability }
+    }
+
     /// Whether the two agree: neither the joint test nor any parameter alone speaks against it. Each of the two has half of the
     /// level, so that 1 % of unchanged pairs at most are said to disagree. Without a parameter in common they do not agree.
     pub fn agrees(&self) -> bool {
         let agree_jointly =
             self.probability.is_some_and(|probability| probability > 0.5 * Level::Disagreement.probability());
         !self.differences.is_empty() && agree_jointly && !self.differences.iter().any(ParameterDifference::is_real)
-    }
-}
-
-/// Coverage factor of the expanded uncertainties in `E_n` (ISO 13528, 9.7).
-const COVERAGE_FACTOR: f64 = 2.0;
-
-impl Estimates {
-    /// Compares the parameters that both determine: the `other` less these.
-    pub fn compare(&self, other: &Self) -> Comparison {
-        let place = |name: &String| other.names.iter().position(|there| there == name);
-        let shared: Vec<(usize, usize)> =
-            self.names.iter().enumerate().filter_map(|(i, name)| Some((i, place(name)?))).collect();
-        let covariance = DMatrix::from_fn(shared.len(), shared.len(), |m, n| {
-            let ((i, k), (j, l)) = (shared[m], shared[n]);
-            self.covariance[(i, j)] + other.covariance[(k, l)]
-        });
-        let differences: Vec<ParameterDifference> = shared
-            .iter()
-            .enumerate()
-            .map(|(n, &(i, k))| {
-                let (difference, standard_uncertainty) = (other.values[k] - self.values[i], covariance[(n, n)].sqrt());
-                let e_n = difference / (COVERAGE_FACTOR * standard_uncertainty);
-                let square = (difference / standard_uncertainty).powi(2);
-                let alone = if difference == 0.0 { 1.0 } else { chi_squared_tail(square, 1) };
-                let probability = (shared.len() as f64 * alone).min(1.0);
-                ParameterDifference { name: self.names[i].clone(), difference, standard_uncertainty, e_n, probability }
-            })
-            .collect();
-        let chi_squared = weighted_square(differences.iter().map(|d| d.difference), &covariance);
-        let probability = chi_squared.map(|chi_squared| chi_squared_tail(chi_squared, shared.len()));
-        Comparison { differences, chi_squared, probability }
     }
 }
 

@@ -1,9 +1,9 @@
 //! Histories against drawn ones: intervals cover as they say, and what was planted is found, nothing else.
 
 use centrical::history::{
-    Between, Curve, Likely, Point, Quantiles, Reading, Sameness, Series, SessionEstimates, StationTest, UnitDistance,
-    UnitTrend,
+    Between, Curve, Likely, Point, Quantiles, Reading, Sameness, Series, StationTest, UnitDistance, UnitTrend,
 };
+use centrical::uncertainty::Estimates;
 use nalgebra::{DMatrix, DVector};
 
 use crate::common::Random;
@@ -142,11 +142,11 @@ fn a_move_to_another_station_is_no_scatter() {
                 moved.map(|(i, point)| Point { value: point.value + offsets[i / 3], ..*point }).collect();
             let found = alone(&Series::new(&points, &shared).unwrap(), Curve::Constant);
             covered += u32::from(is_in(between * between, found.interval));
-            let session = |point: &Point| SessionEstimates {
+            let session = |point: &Point| Estimates {
                 values: DVector::from_element(1, point.value),
                 covariance: DMatrix::from_element(1, 1, point.variance),
             };
-            let sessions: Vec<SessionEstimates> = points.iter().map(session).collect();
+            let sessions: Vec<Estimates> = points.iter().map(session).collect();
             let changes: Vec<DMatrix<f64>> = (0..6).map(|i| shared.rows(i, 1).into_owned()).collect();
             let test = Sameness::of(&sessions, &vec![vec![0]; 6], &changes).unwrap();
             assert!((test.chi_squared / found.misfit - 1.0).abs() < 1e-9, "{} {}", test.chi_squared, found.misfit);
@@ -232,7 +232,7 @@ fn what_sessions_share_cancels_in_differences() {
     let covariance = &factor * factor.transpose();
     let (mut sum, mut small, mut far) = (0.0, 0, 0);
     for run in 0..500 {
-        let mut session = || SessionEstimates {
+        let mut session = || Estimates {
             values: DVector::repeat(5, 7.0) + &factor * DVector::from_fn(5, |_, _| random.normal()),
             covariance: covariance.clone(),
         };
@@ -255,8 +255,8 @@ fn what_sessions_share_cancels_in_differences() {
     // Sessions that scatter by ten standard deviations in one quantity: one in a hundred is too far off for the scatter of the others.
     let mut too_far = 0;
     for _ in 0..500 {
-        let sessions: Vec<SessionEstimates> = (0..6)
-            .map(|_| SessionEstimates {
+        let sessions: Vec<Estimates> = (0..6)
+            .map(|_| Estimates {
                 values: &factor * DVector::from_fn(5, |j, _| random.normal() * if j == 2 { 10.0 } else { 1.0 }),
                 covariance: covariance.clone(),
             })
@@ -285,11 +285,11 @@ fn sessions_need_not_have_all_quantities() {
     let has = [vec![0, 1, 2, 3, 4], vec![0, 3], vec![0, 1, 2, 3, 4], vec![4, 1], vec![0, 1, 2, 3, 4]];
     let (mut sum, mut small) = (0.0, 0);
     for run in 0..500 {
-        let mut of = |changed: f64| -> Vec<SessionEstimates> {
+        let mut of = |changed: f64| -> Vec<Estimates> {
             let session = |(n, has): (usize, &Vec<usize>)| {
                 let drawn = &factor * DVector::from_fn(5, |_, _| random.normal());
                 let value = |j: usize| drawn[j] + if j == 2 && n == 4 { changed } else { 0.0 };
-                SessionEstimates {
+                Estimates {
                     values: DVector::from_fn(has.len(), |i, _| value(has[i])),
                     covariance: DMatrix::from_fn(has.len(), has.len(), |i, k| covariance[(has[i], has[k])]),
                 }
@@ -320,7 +320,7 @@ fn plant(units: usize, factor: &DMatrix<f64>, random: &mut Random) -> DMatrix<f6
 fn alike(values: &DMatrix<f64>, seed: u64) -> Vec<UnitDistance> {
     let (n, p) = values.shape();
     let session =
-        |unit, _| SessionEstimates { values: values.row(unit).transpose(), covariance: DMatrix::identity(p, p) * 1e-4 };
+        |unit, _| Estimates { values: values.row(unit).transpose(), covariance: DMatrix::identity(p, p) * 1e-4 };
     UnitDistance::of_all(&vec![1; n], &session, seed).unwrap()
 }
 
@@ -470,7 +470,7 @@ fn found_among_unequal(
     let sign = |i: usize, j: usize| if (i + j).is_multiple_of(2) { 4.0 } else { -4.0 };
     let stated = DMatrix::from_fn(PARAMETERS, PARAMETERS, |i, j| if amiss { sign(i, j) } else { 1.0 });
     let stated = stated.component_mul(&together);
-    let mut unit = |unit: usize| -> Vec<SessionEstimates> {
+    let mut unit = |unit: usize| -> Vec<Estimates> {
         let own = DVector::from_fn(PARAMETERS, |_, _| scatter * random.normal());
         let mut session = || {
             let size = if random.uniform() < 0.5 { 1.0 } else { LARGEST };
@@ -480,11 +480,11 @@ fn found_among_unequal(
             if unit < planted {
                 values[unit] += 8.0 * scatter.hypot(LARGEST);
             }
-            SessionEstimates { values, covariance: &stated * (size * size) }
+            Estimates { values, covariance: &stated * (size * size) }
         };
         (0..counts[unit]).map(|_| session()).collect()
     };
-    let sessions: Vec<Vec<SessionEstimates>> = (0..units).map(&mut unit).collect();
+    let sessions: Vec<Vec<Estimates>> = (0..units).map(&mut unit).collect();
     let session = |unit: usize, t: usize| sessions[unit][t].clone();
     let distances = UnitDistance::of_all(&counts, &session, seed).unwrap();
     (0..).zip(distances).filter(|(_, unit)| unit.probability < 0.05).map(|(n, _)| n).collect()

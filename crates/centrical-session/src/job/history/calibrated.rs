@@ -6,7 +6,8 @@ mod output;
 
 use std::sync::Arc;
 
-use centrical::history::{Point, Series, SessionEstimates};
+use centrical::history::{Point, Series};
+use centrical::uncertainty::Estimates;
 use centrical_compensate::Term;
 use nalgebra::{DMatrix, DVector};
 
@@ -205,7 +206,7 @@ impl Calibrated {
 
     /// Estimates at `places` as the result states them, with the covariance of the errors that belong to this session alone; where covariances
     /// were not read, with their variances.
-    pub fn stated_estimates(&self, places: &[usize]) -> SessionEstimates {
+    pub fn stated_estimates(&self, places: &[usize]) -> Estimates {
         let seen = self.seen(Basis::Stated);
         let numbers: Option<Vec<usize>> = places.iter().map(|&place| self.number_in_unit(place)).collect();
         let n = places.len();
@@ -219,7 +220,7 @@ impl Calibrated {
             covariance.fill(0.0);
         }
         covariance.set_diagonal(&DVector::from_iterator(n, stated.iter().zip(places).map(variance)));
-        SessionEstimates { values: DVector::from_fn(n, |a, _| self.values[places[a]]), covariance }
+        Estimates { values: DVector::from_fn(n, |a, _| self.values[places[a]]), covariance }
     }
 
     /// The number of a parameter among those of the unit.
@@ -264,12 +265,12 @@ impl Calibrated {
     }
 
     /// Values of `names` by the data and the covariance of the errors that belong to this session alone; `None` if one is not determined.
-    pub fn own_estimates(&self, names: &[String]) -> Option<(DVector<f64>, DMatrix<f64>)> {
+    pub fn own_estimates(&self, names: &[String]) -> Option<Estimates> {
         let places: Vec<usize> = names.iter().map(|name| self.place(name)).collect::<Option<_>>()?;
         let seen = self.seen(Basis::Data);
         let own = |a: usize, b: usize| seen.own_covariance(places[a], places[b]);
         let values = DVector::from_iterator(places.len(), places.iter().map(|&j| seen.values[j]));
-        Some((values, DMatrix::from_fn(places.len(), places.len(), own)))
+        Some(Estimates { values, covariance: DMatrix::from_fn(places.len(), places.len(), own) })
     }
 
     /// Of a calibration without covariances only the variances are known.

@@ -1,8 +1,6 @@
 //! One unit over its calibrations.
 
-use centrical::history::{
-    Between, Curve, DAYS_IN_YEAR, Estimated, Evolution, Likely, Quantiles, Sameness, Series, SessionEstimates,
-};
+use centrical::history::{Between, Curve, DAYS_IN_YEAR, Estimated, Evolution, Likely, Quantiles, Sameness, Series};
 use centrical::uncertainty::{Compensated, family_wise};
 use centrical_compensate::Term;
 use nalgebra::{DMatrix, Vector3};
@@ -220,9 +218,8 @@ impl Job<'_> {
                 continue;
             }
             let of_session: Vec<String> = has.iter().map(|&i| names[i].clone()).collect();
-            let (values, covariance) = calibrated.own_estimates(&of_session)?;
+            sessions.push(calibrated.own_estimates(&of_session)?);
             own.push(*calibrated);
-            sessions.push(SessionEstimates { values, covariance });
             shared.push(changes.select_rows(&has));
             quantities.push(has);
         }

@@ -14,14 +14,14 @@ use rayon::prelude::*;
 
 use super::component::{Component, Known};
 use super::rows::{Rows, add_scaled};
-use crate::history::together::SessionEstimates;
+use crate::uncertainty::Estimates;
 
 /// The sessions of units of one type.
 pub struct UnitSessions<'a> {
     /// Number of sessions of each unit, one or more.
     pub counts: &'a [usize],
     /// Session `t` of a unit, in the order of time: `p` values and the covariance of their errors as it states them, made when it is asked for.
-    pub session: &'a (dyn Fn(usize, usize) -> SessionEstimates + Sync),
+    pub session: &'a (dyn Fn(usize, usize) -> Estimates + Sync),
 }
 
 /// Fewer differences say nothing.
@@ -62,7 +62,7 @@ impl Corrected {
     }
 
     /// Adds the covariance of the errors of a session, times a weight, to a sum; not a number where a factor is missing.
-    pub fn add_errors(&self, session: &SessionEstimates, weight: f64, sum: &mut DMatrix<f64>) {
+    pub fn add_errors(&self, session: &Estimates, weight: f64, sum: &mut DMatrix<f64>) {
         match self {
             Self::AsStated => add_scaled(&session.covariance, weight, sum),
             Self::Beside(beside) => {
