@@ -50,7 +50,7 @@ pub struct ReducedPlateau {
     pub samples: u64,
     /// Mean reading [m/s^2].
     pub mean: Vector3<f64>,
-    /// Its covariance [m^2/s^4].
+    /// Its covariance [m^2/s^4], with what differs between rests; that in `seen` is of the noise alone.
     pub covariance: Matrix3<f64>,
     /// What its record shows; none for a plateau that came already averaged.
     pub seen: Option<PlateauMean>,

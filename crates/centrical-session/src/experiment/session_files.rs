@@ -30,21 +30,16 @@ impl Session {
         read_records(self.open_record(mounting)?, &self.columns, extent, progress)
     }
 
-    /// Reads the telemetry of a mounting, if it has any.
+    /// Reads the telemetry of a mounting, if it has any; with [`Extent::Growing`] more may come.
     ///
     /// # Errors
     /// As [`RecordReader`](crate::RecordReader).
-    pub fn telemetry(&self, mounting: usize) -> Result<Option<SpeedTrace>, Error> {
-        self.telemetry_to(mounting, Extent::Whole)
-    }
-
-    /// The same of telemetry that may still be growing.
-    pub(crate) fn telemetry_to(&self, mounting: usize, extent: Extent) -> Result<Option<SpeedTrace>, Error> {
+    pub fn telemetry(&self, mounting: usize, extent: Extent) -> Result<Option<SpeedTrace>, Error> {
         let file = self.mountings.get(mounting).and_then(|m| m.telemetry.as_ref());
         file.map(|file| telemetry_of(self.folder.open(file, TELEMETRY)?, &self.columns, extent)).transpose()
     }
 
-    /// Reads the pulses of a mounting, if it has any; with [`Extent::Growing`] more may come.
+    /// Reads the pulses of a mounting likewise.
     ///
     /// # Errors
     /// As [`RecordReader`](crate::RecordReader).

@@ -3,6 +3,7 @@
 use std::fs;
 
 use centrical_session::Session;
+use centrical_table::Extent;
 
 use crate::sample::{EXPERIMENT, Sample};
 
@@ -16,7 +17,7 @@ fn what_is_no_file() {
     let folder = session.record(0).unwrap_err();
     assert_eq!(sample.relative(&folder.to_string()), "records/m01.csv: found a folder, expected a record");
     session.mountings[0].telemetry = Some(sample.file("telemetry.csv", "t,rpm\n0,0\n"));
-    let telemetry = session.telemetry(0).unwrap_err();
+    let telemetry = session.telemetry(0, Extent::Whole).unwrap_err();
     assert_eq!(
         sample.relative(&telemetry.to_string()),
         "telemetry.csv, line 1, omega: found columns \"t, rpm\", expected a column of this name"

@@ -1,6 +1,7 @@
 //! What is said of files as recorders write them, where they and the session disagree.
 
 use centrical_session::Session;
+use centrical_table::Extent;
 
 use crate::sample::{EXPERIMENT, Sample};
 
@@ -100,7 +101,7 @@ fn units_of_telemetry_and_plateaus() {
     let mut session = Session::read(&sample.path()).unwrap();
     session.mountings[0].telemetry = Some(sample.file("telemetry.csv", "t;omega\nс;рад/с\n0;1\n"));
     assert_eq!(
-        sample.relative(&session.telemetry(0).unwrap_err().to_string()),
+        sample.relative(&session.telemetry(0, Extent::Whole).unwrap_err().to_string()),
         "telemetry.csv, line 2, omega: found the unit rad/s, expected rpm, as the session says (speed_unit in [columns])"
     );
     let plateaus = "mounting,speed,angle,mean_1,mean_2,mean_3,cov_11,cov_12,cov_13,cov_22,cov_23,cov_33,samples\n\

@@ -7,6 +7,7 @@ use centrical_session::{
     Error, ErrorKind, Folder, Method, PlateauRow, PlateauTable, Recorded, Session, TableFormat, calibrate,
     calibrate_reduced, reduce, reduce_recorded, unwatched, write_reduced,
 };
+use centrical_table::Extent;
 
 use crate::rests::alone;
 
@@ -18,7 +19,7 @@ fn example() -> PathBuf {
 fn recorded(session: &Session) -> Vec<Recorded> {
     let of_mounting = |m: usize| Recorded {
         record: session.record(m).unwrap(),
-        telemetry: session.telemetry(m).unwrap(),
+        telemetry: session.telemetry(m, Extent::Whole).unwrap(),
         pulses: None,
     };
     (0..session.mountings.len()).map(of_mounting).collect()

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use centrical::SetPoint;
 use centrical::reduction::{NoiseModel, ReducedMounting, ScheduledPlateau};
 use centrical_session::{RecordReader, RecordWriter, Session, reduce_without_inputs, unwatched};
+use centrical_table::Extent;
 use tempfile::TempDir;
 
 fn example() -> PathBuf {
@@ -46,7 +47,7 @@ fn from_files_as_from_memory() {
         let of_mounting = experiment.set_points.iter().filter(|s| s.mounting == m);
         let scheduled = |s: &SetPoint| ScheduledPlateau { omega: s.omega, nominal_z: experiment.nominal(s) };
         let schedule: Vec<ScheduledPlateau> = of_mounting.map(scheduled).collect();
-        let telemetry = session.telemetry(m).unwrap();
+        let telemetry = session.telemetry(m, Extent::Whole).unwrap();
         session.record(m).unwrap().reduce(telemetry.as_ref(), &schedule).unwrap()
     };
     let mountings: Vec<ReducedMounting> = (0..experiment.mountings.len()).map(mounting).collect();

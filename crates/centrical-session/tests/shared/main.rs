@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 use centrical_session::{
     Axes, Column, ColumnName, Columns, Folder, RecordReader, Scale, Session, Tumble, TumbleRequest, tumble, unwatched,
 };
+use centrical_table::Extent;
 
 fn data(session: &str) -> PathBuf {
     let shared = std::env::var_os("CENTRICAL_SHARED").expect("CENTRICAL_SHARED is not set");
@@ -25,7 +26,7 @@ fn sessions_are_read_whole() {
         assert_eq!(session.experiment.set_points.len(), plateaus);
         for mounting in 0..12 {
             let record = session.record(mounting).unwrap();
-            let telemetry = session.telemetry(mounting).unwrap().expect("telemetry");
+            let telemetry = session.telemetry(mounting, Extent::Whole).unwrap().expect("telemetry");
             let (first, last) = (record.t[0], record.t[record.t.len() - 1]);
             let full = (last - first) * rate;
             assert!(record.t.len() as f64 > 0.98 * full, "{name} {mounting}: {} of {full}", record.t.len());

@@ -120,7 +120,7 @@ fn reduce_mounting(
     first_and_last().map_or(Ok(()), |times| refuse_years(file, times))?;
     let survey = survey.with_resolution(session.type_b.resolution);
     let pulses = if session.speeds.counts_pulses() { session.pulses(number, Extent::Whole)? } else { None };
-    let speeds = ShownSpeeds { telemetry: session.telemetry(number)?, pulses };
+    let speeds = ShownSpeeds { telemetry: session.telemetry(number, Extent::Whole)?, pulses };
     let located = located(session, number, file, &survey, &speeds)?;
     let means = record.means(cache, &located)?.into_iter().collect::<Result<_, _>>().map_err(refused)?;
     Ok(OfRecord::new(number, &survey, ReducedMounting::new(located, means), interpolated))

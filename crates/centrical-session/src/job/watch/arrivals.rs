@@ -342,7 +342,7 @@ impl<'s> Watch<'s> {
         // What is not there yet, or not whole, is read when the session is calibrated at its end.
         match measured.map_or(SpeedSource::Telemetry, |measured| measured.source) {
             SpeedSource::Telemetry => {
-                let telemetry = self.session.telemetry_to(mounting, Extent::Growing).ok().flatten();
+                let telemetry = self.session.telemetry(mounting, Extent::Growing).ok().flatten();
                 ShownSpeeds { telemetry, pulses: None }
             }
             SpeedSource::Pulses => {
