@@ -15,12 +15,11 @@ impl Candidates {
         &self,
         criterion: &Criterion,
         times: &[f64],
-        effort: Effort,
         progress: OnProgress<()>,
     ) -> Result<Vec<(f64, Plan)>, PlanError> {
         let mut points = Vec::with_capacity(times.len());
         for &time in times {
-            match self.best_for_time(criterion, time, effort, progress) {
+            match self.best_for_time(criterion, time, Effort::usual(self), progress) {
                 Ok(plan) => points.push((time, plan)),
                 Err(PlanError::TooShort { .. }) => {}
                 Err(error) => return Err(error),

@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use centrical::plan::{
-    Candidates, Criterion, Effort, Goal, Plan, PlanError, Prediction, Rationale, Reached, Robustness, Schedule, Task,
-    Visit, VisitReason,
+    Candidates, Criterion, Goal, Plan, PlanError, Prediction, Rationale, Reached, Robustness, Schedule, Task, Visit,
+    VisitReason,
 };
 use centrical::{Experiment, Group, OnProgress, SetPoint};
 
@@ -195,7 +195,7 @@ fn frontier_rows(
     }
     let Task { candidates, criterion, .. } = &planning.task;
     let times: Vec<f64> = request.frontier.iter().map(|factor| factor * time).collect();
-    let points = candidates.frontier(criterion, &times, Effort::usual(candidates), progress);
+    let points = candidates.frontier(criterion, &times, progress);
     let experiment = candidates.experiment();
     let has_arm = experiment.has_arm();
     let uniform = with_set_points(candidates, &uniform_set_points(experiment));
