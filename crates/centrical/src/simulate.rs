@@ -26,7 +26,6 @@ pub use equipment::{
 };
 pub use motion::TruePlateau;
 pub use record::Records;
-pub use telemetry::Telemetry;
 pub use tumble::TrueRest;
 
 use std::ops::Range;
@@ -34,6 +33,7 @@ use std::ops::Range;
 use nalgebra::Vector3;
 
 use crate::model::{ArmMotion, Kind, MeasurementModel, Parameter, SetPoint};
+use crate::reduction::SpeedTrace;
 use draw::Draw;
 use motion::Motion;
 use record::{Physics, Signal};
@@ -223,17 +223,20 @@ impl SimulatedMounting<'_> {
         Records::new(Signal::Arm { physics, motion: &self.motion, segment: 0 }, equipment, &sampling)
     }
 
-    /// The centrifuge's telemetry.
-    pub fn telemetry(&self) -> Telemetry {
-        Telemetry::new(&self.motion, &self.simulation.equipment.tachometer, self.simulation.seed, self.mounting)
+    /// The centrifuge's clock less the unit's as the record begins [s], and its rate against the unit's, less 1.
+    pub fn clock(&self) -> [f64; 2] {
+        telemetry::clock(&self.simulation.equipment.tachometer, self.simulation.seed, self.mounting)
+    }
+
+    /// The centrifuge's telemetry by that clock.
+    pub fn telemetry(&self) -> SpeedTrace {
+        telemetry::telemetry(&self.motion, &self.simulation.equipment.tachometer, self.simulation.seed, self.mounting)
     }
 
     /// Times of the counter's pulses [s], by the telemetry's clock as the record begins.
     pub fn pulses(&self) -> Vec<f64> {
-        let Equipment { tachometer, counter, .. } = self.simulation.equipment;
-        let mut clock = Draw::Clock.stream(self.simulation.seed, self.mounting);
-        let offset = tachometer.clock_offset * (2.0 * clock.uniform() - 1.0);
-        telemetry::pulses(&self.motion, counter, offset, self.simulation.seed, self.mounting)
+        let Simulation { equipment, seed, .. } = self.simulation;
+        telemetry::pulses(&self.motion, &equipment.counter, self.clock()[0], seed, self.mounting)
     }
 }
 

@@ -97,11 +97,8 @@ impl Output<'_> {
             write_table(&file, format, &headers.pulses, std::iter::once(Ok(rows)))?;
         }
         advance(progress, 1)?;
-        Ok(Written {
-            plateaus: mounting.plateaus(),
-            clock_offset: telemetry.clock_offset,
-            clock_drift: telemetry.clock_drift,
-        })
+        let [clock_offset, clock_drift] = mounting.clock();
+        Ok(Written { plateaus: mounting.plateaus(), clock_offset, clock_drift })
     }
 
     /// The record of the rests of one `[[tumble]]`, and the attitudes that are known of them where a table states them.

@@ -3,44 +3,36 @@
 use super::draw::Draw;
 use super::equipment::{Counter, Tachometer};
 use super::motion::Motion;
+use crate::reduction::SpeedTrace;
 
-/// The telemetry of one mounting.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct Telemetry {
-    /// Time by the centrifuge's clock [s]: `clock_offset + (1 + clock_drift) t`, `t` on the unit's clock.
-    pub t: Vec<f64>,
-    /// Angular speed [rad/s].
-    pub omega: Vec<f64>,
-    /// The centrifuge's clock less the unit's as the record begins [s].
-    pub clock_offset: f64,
-    /// Rate of the centrifuge's clock against the unit's, less 1.
-    pub clock_drift: f64,
+/// The centrifuge's clock less the unit's as the record begins [s], and its rate against the unit's, less 1.
+pub(super) fn clock(tachometer: &Tachometer, seed: u64, mounting: usize) -> [f64; 2] {
+    let mut random = Draw::Clock.stream(seed, mounting);
+    let offset = tachometer.clock_offset * (2.0 * random.uniform() - 1.0);
+    [offset, tachometer.clock_drift * random.normal()]
 }
 
-impl Telemetry {
-    pub(super) fn new(motion: &Motion, tachometer: &Tachometer, seed: u64, mounting: usize) -> Self {
-        let mut clock = Draw::Clock.stream(seed, mounting);
-        let mut random = Draw::Tachometer.stream(seed, mounting);
-        let clock_offset = tachometer.clock_offset * (2.0 * clock.uniform() - 1.0);
-        let clock_drift = tachometer.clock_drift * clock.normal();
-        let mut telemetry = Self { clock_offset, clock_drift, ..Self::default() };
-        let times = (0_u64..).map(|n| n as f64 / tachometer.rate).take_while(|t| *t <= motion.duration());
-        let errors = motion.measured_errors(tachometer.plateau_error, seed, mounting);
-        for t in times {
-            let noise = if tachometer.noise > 0.0 { tachometer.noise * random.normal() } else { 0.0 };
-            let speed = if tachometer.measures {
-                let (speed, segment) = motion.true_speed(t);
-                speed * (1.0 + errors.get(segment).copied().unwrap_or(0.0))
-            } else {
-                motion.believed_speed(t)
-            };
-            let omega = speed * (1.0 + tachometer.scale_error) + noise;
-            let quantum = tachometer.quantum;
-            telemetry.t.push(clock_offset + (1.0 + clock_drift) * t);
-            telemetry.omega.push(if quantum > 0.0 { (omega / quantum).round() * quantum } else { omega });
-        }
-        telemetry
+/// The telemetry of one mounting, its times by the centrifuge's clock: `offset + (1 + drift) t`, `t` on the unit's clock.
+pub(super) fn telemetry(motion: &Motion, tachometer: &Tachometer, seed: u64, mounting: usize) -> SpeedTrace {
+    let [offset, drift] = clock(tachometer, seed, mounting);
+    let mut random = Draw::Tachometer.stream(seed, mounting);
+    let times = (0_u64..).map(|n| n as f64 / tachometer.rate).take_while(|t| *t <= motion.duration());
+    let errors = motion.measured_errors(tachometer.plateau_error, seed, mounting);
+    let mut trace = SpeedTrace { t: Vec::new(), omega: Vec::new() };
+    for t in times {
+        let noise = if tachometer.noise > 0.0 { tachometer.noise * random.normal() } else { 0.0 };
+        let speed = if tachometer.measures {
+            let (speed, segment) = motion.true_speed(t);
+            speed * (1.0 + errors.get(segment).copied().unwrap_or(0.0))
+        } else {
+            motion.believed_speed(t)
+        };
+        let omega = speed * (1.0 + tachometer.scale_error) + noise;
+        let quantum = tachometer.quantum;
+        trace.t.push(offset + (1.0 + drift) * t);
+        trace.omega.push(if quantum > 0.0 { (omega / quantum).round() * quantum } else { omega });
     }
+    trace
 }
 
 /// Times of all pulses [s] on a clock that is `offset` from the unit's as the record begins.

@@ -2,9 +2,7 @@
 
 use centrical::ThirdPosition;
 use centrical::plan::{Noise, Prediction, ReadingRange};
-use centrical::reduction::{
-    Located, MeasuredSpeed, PulseTrain, Record, ReducedMounting, ScheduledPlateau, SpeedTrace, Survey,
-};
+use centrical::reduction::{Located, MeasuredSpeed, PulseTrain, Record, ReducedMounting, ScheduledPlateau, Survey};
 use centrical::simulate::{Counter, Equipment, Machine, Recorder, Sensor, Simulation, Tachometer};
 use centrical::uncertainty::{Extent, Level, ShownSpeed, StatedSpeeds};
 use centrical::{Calibration, Data, Experiment, MeasurementModel, Observation, PairRelation, SetPoint, Weight};
@@ -62,18 +60,13 @@ fn located(model: &MeasurementModel, simulation: &Simulation, m: usize) -> (Reco
     (record, located)
 }
 
-fn telemetry_of(simulation: &Simulation, m: usize) -> SpeedTrace {
-    let telemetry = simulation.mounting(m).telemetry();
-    SpeedTrace { t: telemetry.t, omega: telemetry.omega }
-}
-
 fn reduced(model: &MeasurementModel, simulation: &Simulation, m: usize, counted: Option<f64>) -> ReducedMounting {
     let (record, mut located) = located(model, simulation, m);
     match counted {
         Some(per_revolution) => {
             located.time_pulses(&PulseTrain { t: simulation.mounting(m).pulses(), per_revolution });
         }
-        None => located.time_telemetry(&telemetry_of(simulation, m)),
+        None => located.time_telemetry(&simulation.mounting(m).telemetry()),
     }
     located.averaged(record.as_slice()).unwrap()
 }
@@ -92,7 +85,7 @@ fn pulses_of_another_record_leave_no_speeds() {
         let set: Vec<f64> = model.experiment().set_points.iter().map(|s| s.omega).collect();
         MeasuredSpeed::of_all(&set, &[reduced]).iter().flatten().count()
     };
-    located.time_telemetry(&telemetry_of(&simulation, 0));
+    located.time_telemetry(&simulation.mounting(0).telemetry());
     assert_eq!(shown(&located), 7);
     let t = simulation.mounting(0).pulses().iter().map(|t| 3.0 * t).collect();
     located.time_pulses(&PulseTrain { t, per_revolution: equipment.counter.per_revolution });
