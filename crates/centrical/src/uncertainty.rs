@@ -34,7 +34,6 @@ mod tilt;
 mod validity;
 mod verdict;
 
-pub use crate::fit::batch::FitMethod;
 pub use crate::statistics::{chi_squared_tail, family_wise};
 pub use axes::{ModelInAxes, ScaleForm};
 pub use between_rests::BetweenRests;

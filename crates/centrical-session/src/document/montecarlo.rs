@@ -1,6 +1,6 @@
 //! The calibration repeated on drawn readings, as a document: schema `centrical-montecarlo/1`.
 
-use centrical::uncertainty::{FitMethod, MonteCarlo, ParameterStatistics, Settings, WeightedSquare};
+use centrical::uncertainty::{MonteCarlo, ParameterStatistics, Settings, WeightedSquare};
 use centrical::{Group, Parameters};
 use serde::Serialize;
 
@@ -46,15 +46,6 @@ pub enum RepeatedFit {
     Exact,
     /// The linear fit of [K5.3] alone.
     Linear,
-}
-
-impl From<FitMethod> for RepeatedFit {
-    fn from(method: FitMethod) -> Self {
-        match method {
-            FitMethod::Exact => Self::Exact,
-            FitMethod::Linear => Self::Linear,
-        }
-    }
 }
 
 /// One unknown over all runs, SI. All figures are null where the data do not determine it.
@@ -121,7 +112,7 @@ impl MonteCarloReport {
             schema: MONTE_CARLO_SCHEMA,
             program: Program::this(),
             seed: settings.seed,
-            fit: settings.method.into(),
+            fit: if settings.is_linear { RepeatedFit::Linear } else { RepeatedFit::Exact },
             runs,
             failures: monte_carlo.failures,
             coverage: settings.coverage,

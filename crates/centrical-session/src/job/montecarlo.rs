@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use centrical::plan::Prediction;
-use centrical::uncertainty::{FitMethod, MonteCarlo, Settings};
+use centrical::uncertainty::{MonteCarlo, Settings};
 use centrical::{Calibration, Data, FitError, MeasurementModel, Observation, OnProgress, STANDARD_GRAVITY, Weight};
 use nalgebra::Vector3;
 
@@ -36,8 +36,7 @@ impl MonteCarloRequest {
     }
 
     fn settings(&self) -> Settings {
-        let method = if self.linear { FitMethod::Linear } else { FitMethod::Exact };
-        Settings { runs: self.runs, seed: self.seed, coverage: self.coverage, method }
+        Settings { runs: self.runs, seed: self.seed, coverage: self.coverage, is_linear: self.linear }
     }
 }
 

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use centrical::TypeB;
 use centrical::plan::Prediction;
-use centrical::uncertainty::{FitMethod, MonteCarlo, Settings};
+use centrical::uncertainty::{MonteCarlo, Settings};
 use centrical::{Data, MeasurementModel, Observation, Weight};
 use centrical_session::{PlannedSession, read_plan, read_planning, unwatched};
 use nalgebra::Vector3;
@@ -82,7 +82,7 @@ impl Case {
         let observation =
             |w: &Weight| Observation { set_point: w.set_point, mean: Vector3::zeros(), covariance: w.covariance };
         let observations: Vec<Observation> = self.weights.iter().map(observation).collect();
-        let settings = Settings { runs: RUNS, seed: 3, coverage: 0.95, method: FitMethod::Exact };
+        let settings = Settings { runs: RUNS, seed: 3, coverage: 0.95, is_linear: false };
         let data = Data::new(&model, observations).unwrap();
         let shown = MonteCarlo::of(&data, truth, &settings, &unwatched).unwrap();
         let mut compared = Vec::new();
@@ -171,7 +171,7 @@ fn every_parameter_of_the_source_as_printed_scatters_as_predicted() {
         .iter()
         .map(|w| Observation { set_point: w.set_point, mean: Vector3::zeros(), covariance: w.covariance })
         .collect();
-    let settings = Settings { runs: 4000, seed: 3, coverage: 0.95, method: FitMethod::Exact };
+    let settings = Settings { runs: 4000, seed: 3, coverage: 0.95, is_linear: false };
     let zero = quiet.truth(0.0);
     let data = Data::new(model, observations).unwrap();
     let shown = MonteCarlo::of(&data, &zero, &settings, &unwatched).unwrap();

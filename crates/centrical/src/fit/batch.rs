@@ -37,7 +37,7 @@ pub(super) const HALVING_LIMIT: u32 = 30;
 
 /// The model that is fitted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum FitMethod {
+pub(crate) enum FitMethod {
     /// The exact one, by Gauss-Newton.
     Exact,
     /// The linear one.

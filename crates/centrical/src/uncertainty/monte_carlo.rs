@@ -26,8 +26,8 @@ pub struct Settings {
     pub seed: u64,
     /// Probability that the intervals are to cover, in (0, 1).
     pub coverage: f64,
-    /// The fit that is repeated.
-    pub method: FitMethod,
+    /// Whether the linear fit alone is repeated, and not the exact one.
+    pub is_linear: bool,
 }
 
 /// What the runs show.
@@ -162,7 +162,8 @@ impl<'a> Laboratory<'a> {
         let truth = self.draw_truth(&mut random);
         let drawn = self.draw(&truth, &mut random);
         let drawn = Data::new(self.data.model(), drawn)?;
-        Ok(self.judge(&self.structure.fit(self.settings.method, &drawn)?, &truth))
+        let method = if self.settings.is_linear { FitMethod::Linear } else { FitMethod::Exact };
+        Ok(self.judge(&self.structure.fit(method, &drawn)?, &truth))
     }
 
     /// The unknowns, those with a prior drawn from it.

@@ -3,7 +3,7 @@
 use centrical::PairRelation;
 use centrical::TypeB;
 use centrical::uncertainty::Degrees;
-use centrical::uncertainty::{FitMethod, MonteCarlo};
+use centrical::uncertainty::MonteCarlo;
 
 use crate::uncertainty::{Case, STATED};
 
@@ -51,7 +51,7 @@ fn fault(monte_carlo: &MonteCarlo, tolerance: &Tolerance) -> Option<String> {
 fn check(runs: usize, tolerance: &Tolerance) {
     let case = Case::new(PairRelation::Common);
     for stated in [TypeB::default(), STATED] {
-        let monte_carlo = case.monte_carlo(runs, &stated, FitMethod::Exact);
+        let monte_carlo = case.monte_carlo(runs, &stated, false);
         assert_eq!(fault(&monte_carlo, tolerance), None);
         if stated == TypeB::default() {
             let mean = monte_carlo.chi_squared.mean;
@@ -62,7 +62,7 @@ fn check(runs: usize, tolerance: &Tolerance) {
             }
             assert!((mean - 275.0).abs() < 5.0 * (2.0 * 275.0 / runs as f64).sqrt(), "chi^2 {mean}");
         }
-        let linear = case.monte_carlo(runs.min(10_000), &stated, FitMethod::Linear);
+        let linear = case.monte_carlo(runs.min(10_000), &stated, true);
         assert!(fault(&linear, tolerance).is_some(), "the linear fit should fail");
     }
 }

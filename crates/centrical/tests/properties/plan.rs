@@ -4,7 +4,7 @@ use centrical::plan::{
 };
 use centrical::reduction::{NoiseModel, Record, ScheduledPlateau};
 use centrical::simulate::{Machine, Recorder, Sensor, Simulation};
-use centrical::uncertainty::{Compensated, FitMethod, MonteCarlo, Settings};
+use centrical::uncertainty::{Compensated, MonteCarlo, Settings};
 use centrical::{
     Centrifuge, Data, ErrorModel, Experiment, Extension, Law, MeasurementModel, Monomial, Mounting, Observation,
     PairRelation, Parameter, ReferencePoint, SetPoint, Site, Term, Unit, Weight, unwatched,
@@ -483,7 +483,7 @@ fn predictions_are_what_monte_carlo_shows() {
             covariance: w.covariance,
         })
         .collect();
-    let settings = Settings { runs: RUNS, seed: 3, coverage: 0.95, method: FitMethod::Exact };
+    let settings = Settings { runs: RUNS, seed: 3, coverage: 0.95, is_linear: false };
     let data = Data::new(&model, observations).unwrap();
     let shown = MonteCarlo::of(&data, &zero, &settings, &unwatched).unwrap();
     let mut ratios = Vec::new();

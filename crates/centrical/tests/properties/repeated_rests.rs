@@ -2,7 +2,7 @@
 
 use centrical::ThirdPosition::AxisOneUp;
 use centrical::observability::cube_directions;
-use centrical::uncertainty::{FitMethod, MonteCarlo, Settings};
+use centrical::uncertainty::{MonteCarlo, Settings};
 use centrical::{
     Data, Effect, Experiment, MeasurementModel, Mounting, PairRelation, Position, SetPoint, SwitchOn, TypeB, unwatched,
 };
@@ -38,7 +38,7 @@ fn with_cube(has_arm: bool, uncertainty: Option<f64>, switch_ons: usize) -> Expe
 fn repeated(model: &MeasurementModel) -> MonteCarlo {
     let x = truth(model, 1.0, &mut Random::new(5));
     let data = Data::new(model, observations(model, &x)).unwrap();
-    let settings = Settings { runs: RUNS, seed: 8, coverage: 0.95, method: FitMethod::Exact };
+    let settings = Settings { runs: RUNS, seed: 8, coverage: 0.95, is_linear: false };
     MonteCarlo::of(&data, &x, &settings, &unwatched).unwrap()
 }
 

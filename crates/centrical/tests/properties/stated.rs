@@ -2,7 +2,7 @@
 //! better sharpen it.
 
 use centrical::ThirdPosition::AxisOneUp;
-use centrical::uncertainty::{FitMethod, Level, MonteCarlo, Settings, chi_squared_tail};
+use centrical::uncertainty::{Level, MonteCarlo, Settings, chi_squared_tail};
 use centrical::{
     Calibration, Data, Extension, Law, MeasurementModel, PairRelation, Rival, SetPoint, Source, TypeB, unwatched,
 };
@@ -20,7 +20,7 @@ fn repeated(model: &MeasurementModel, stated: &TypeB) -> MonteCarlo {
     let model = model.clone().with_stated(*stated);
     let x = truth(&model, 0.5, &mut Random::new(3));
     let data = Data::new(&model, observations(&model, &x)).unwrap();
-    let settings = Settings { runs: RUNS, seed: 4, coverage: 0.95, method: FitMethod::Exact };
+    let settings = Settings { runs: RUNS, seed: 4, coverage: 0.95, is_linear: false };
     MonteCarlo::of(&data, &x, &settings, &unwatched).unwrap()
 }
 

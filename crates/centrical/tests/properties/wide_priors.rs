@@ -1,7 +1,7 @@
 //! Priors and readings so weak that the model is curved over what they leave open.
 
 use centrical::ThirdPosition::AxisOneUp;
-use centrical::uncertainty::{FitMethod, MonteCarlo, Settings};
+use centrical::uncertainty::{MonteCarlo, Settings};
 use centrical::{Calibration, Data, Observation, PairRelation, Termination, unwatched};
 
 use crate::common::{Random, experiment, kozlov, observations, truth};
@@ -17,7 +17,7 @@ fn joint_covariance_with_one_radius() {
             let model = model.with_prior("alpha", 1e-2).unwrap().with_prior("delta", 1e-2).unwrap();
             let x = truth(&model, 0.5, &mut Random::new(3));
             let data = Data::new(&model, observations(&model, &x)).unwrap();
-            let settings = Settings { runs: 300, seed: 4, coverage: 0.95, method: FitMethod::Exact };
+            let settings = Settings { runs: 300, seed: 4, coverage: 0.95, is_linear: false };
             let shown = MonteCarlo::of(&data, &x, &settings, &unwatched).unwrap();
             let ratio = shown.weighted_square.mean / shown.weighted_square.degrees_of_freedom as f64;
             println!("{relation:?} {name}: squared error {ratio:.3} of the stated");
@@ -56,8 +56,7 @@ fn parameters_beyond_the_linear_range() {
     let made: Vec<_> = observations(&model, &x).into_iter().filter(is_made).collect();
     let data = Data::new(&model, made).unwrap();
     let (runs, coverage) = (300, 0.95);
-    let shown =
-        MonteCarlo::of(&data, &x, &Settings { runs, seed: 6, coverage, method: FitMethod::Exact }, &unwatched).unwrap();
+    let shown = MonteCarlo::of(&data, &x, &Settings { runs, seed: 6, coverage, is_linear: false }, &unwatched).unwrap();
     assert_eq!(shown.failures, 0);
     for (parameter, statistics) in model.parameters().iter().zip(&shown.parameters) {
         let Some(statistics) = statistics else { continue };
