@@ -55,7 +55,8 @@ impl<T: AsRef<[Term]>> Compensation<T> {
         self.inverse.apply(self.terms(), reading)
     }
 
-    pub(crate) fn terms(&self) -> &[Term] {
+    /// The terms.
+    pub fn terms(&self) -> &[Term] {
         self.terms.as_ref()
     }
 }

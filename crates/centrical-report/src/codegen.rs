@@ -12,11 +12,10 @@ mod statement;
 
 use std::path::Path;
 
-use centrical_compensate::{Compensation, NotInvertible, Term};
+use centrical_compensate::{Compensation, Term};
 use centrical_session::{CalibrationResult, Error, ObjectionName, OutputSummary};
 
 use self::model::Model;
-pub use self::statement::NamedTerm;
 use crate::language::Language;
 
 /// The compensation of a result as source files, for specific forces up to `range` [m/s^2], by default the range of the result.
@@ -31,12 +30,10 @@ pub(crate) fn source_of_result(
     let file = || file.to_owned();
     let terms = result.error_terms().map_err(|source| Error::ErrorModel { file: file(), source })?;
     let range = range.map_or_else(|| result.compensation_range(&terms), Ok);
-    let names = result.model.error_model.iter().map(|term| term.name.clone());
-    let terms: Vec<NamedTerm> = names.zip(terms).map(|(name, term)| NamedTerm { name, term }).collect();
-    let axes = result.axes.as_ref().map(|axes| &axes.matrix);
-    range
-        .and_then(|range| compensation_source(&heading(result), &terms, result.output.as_ref(), range, axes))
-        .map_err(|source| Error::NotInvertible { file: file(), source })
+    let compensation = range.and_then(|range| Compensation::new(terms, range));
+    let compensation = compensation.map_err(|source| Error::NotInvertible { file: file(), source })?;
+    let names: Vec<String> = result.model.error_model.iter().map(|term| term.name.clone()).collect();
+    Ok(compensation_source(&heading(result), &names, &result.in_its_axes(compensation), result.output.as_ref()))
 }
 
 /// What the first comment says of a result.
@@ -66,28 +63,20 @@ pub struct SourceFile {
     pub text: String,
 }
 
-/// The compensation of a unit as `centrical_compensate.h`, `.c`, `.m` (MATLAB and Octave) and `.py`, for specific
-/// forces up to `range` [m/s^2] on each axis. `heading` goes into the first comment of each, a line each. With the nominal
-/// `output` of a unit in counts or volts, each also takes its raw output;
-/// with `axes`, as of [`Compensation::in_axes`], specific forces are in those.
-///
-/// # Errors
-/// [`NotInvertible`] as [`Compensation::new`].
+/// The compensation of a unit as `centrical_compensate.h`, `.c`, `.m` (MATLAB and Octave) and `.py`, its terms under these `names`.
+/// `heading` goes into the first comment of each, a line each. With the nominal `output` of a unit in counts or volts, each also takes
+/// its raw output.
 pub fn compensation_source(
     heading: &[String],
-    terms: &[NamedTerm],
+    names: &[String],
+    compensation: &Compensation<Vec<Term>>,
     output: Option<&OutputSummary>,
-    range: f64,
-    axes: Option<&[[f64; 3]; 3]>,
-) -> Result<Vec<SourceFile>, NotInvertible> {
-    let plain: Vec<Term> = terms.iter().map(|named| named.term).collect();
-    let compensation = Compensation::new(plain.as_slice(), range)?;
-    let compensation = axes.map_or(compensation, |c_zb| compensation.in_axes(*c_zb));
-    let model = Model { heading, terms, output, plain: &plain, compensation: &compensation };
-    Ok(vec![
+) -> Vec<SourceFile> {
+    let model = Model { heading, names, output, compensation };
+    vec![
         SourceFile { name: "centrical_compensate.h", text: c::header(&model) },
         SourceFile { name: "centrical_compensate.c", text: c::source(&model) },
         SourceFile { name: "centrical_compensate.m", text: octave::function(&model) },
         SourceFile { name: "centrical_compensate.py", text: python::module(&model) },
-    ])
+    ]
 }

@@ -3,21 +3,21 @@
 use centrical_compensate::{Compensation, Term, reading};
 use centrical_session::OutputSummary;
 
-use super::statement::{self, Language, NamedTerm, harmless};
+use super::statement::{self, Language, harmless};
 
 /// What the files are made from.
 pub(super) struct Model<'a> {
     pub heading: &'a [String],
-    pub terms: &'a [NamedTerm],
+    /// Of the terms of the compensation.
+    pub names: &'a [String],
     pub output: Option<&'a OutputSummary>,
-    pub plain: &'a [Term],
-    pub compensation: &'a Compensation<&'a [Term]>,
+    pub compensation: &'a Compensation<Vec<Term>>,
 }
 
 impl Model<'_> {
     /// Fills what all templates have in common.
     pub fn fill(&self, template: &str, language: &dyn Language) -> String {
-        let linear = self.compensation.linear();
+        let (linear, terms) = (self.compensation.linear(), self.compensation.terms());
         let row = |numbers: &[f64; 3]| numbers.map(|x| language.number(x)).join(", ");
         let rows = |text: String, name: &str, matrix: &[[f64; 3]; 3]| {
             (0..3).fold(text, |text, i| text.replace(&format!("@{name}_{}@", i + 1), &row(&matrix[i])))
@@ -30,8 +30,8 @@ impl Model<'_> {
             .replace("@start_region@", &language.number(centrical_compensate::START_REGION))
             .replace("@edge@", &language.number(1.0 + 8.0 * language.epsilon()))
             .replace("@steps@", &steps.to_string())
-            .replace("@coefficients@", &statement::coefficients(language, self.terms))
-            .replace("@statements@", &statement::error_and_gain(language, self.terms))
+            .replace("@coefficients@", &statement::coefficients(language, self.names, terms))
+            .replace("@statements@", &statement::error_and_gain(language, self.names, terms))
             .replace("@bias@", &row(&linear.bias));
         text = rows(text, "inverse", &linear.inverse);
         if let Some(matrix) = self.compensation.axes() {
@@ -93,14 +93,14 @@ pub(super) fn vector_rows(model: &Model, language: &dyn Language, row: impl Fn(&
 
 /// A reading that must be refused: of half as much again as the range.
 pub(super) fn outside_range(model: &Model, language: &dyn Language) -> String {
-    reading(model.plain, [1.5 * model.range(); 3]).map(|x| language.number(x)).join(", ")
+    reading(model.compensation.terms(), [1.5 * model.range(); 3]).map(|x| language.number(x)).join(", ")
 }
 
 fn vectors(model: &Model) -> Vec<Vector> {
     let corners = (0..8).map(|k| [4, 2, 1].map(|bit| if k & bit == 0 { 1.0 } else { -1.0 }));
     let inside = (1..=INSIDE).map(low_discrepancy);
     let points = std::iter::once([0.0; 3]).chain(corners).chain(inside);
-    let readings = points.map(|u| reading(model.plain, u.map(|u| u * EDGE * model.range())));
+    let readings = points.map(|u| reading(model.compensation.terms(), u.map(|u| u * EDGE * model.range())));
     // What the library makes of the rounded reading: to the last place what every language should.
     readings.filter_map(|r| model.compensation.apply(r).ok().map(|f| Vector { reading: r, f })).collect()
 }

@@ -3,15 +3,6 @@
 use centrical_compensate::{Monomial, Term};
 use centrical_session::harmless_line;
 
-/// A term and the name of its coefficient, for the comments.
-#[derive(Debug, Clone, PartialEq)]
-pub struct NamedTerm {
-    /// Name of the coefficient: `G0_21`.
-    pub name: String,
-    /// The term.
-    pub term: Term,
-}
-
 /// How a language writes what the error model is made of. Indices count from 0.
 pub(super) trait Language {
     /// What begins a line of comment.
@@ -51,20 +42,21 @@ pub(super) trait Language {
     fn add_to_gain(&self, i: usize, j: usize, value: &str) -> String;
 }
 
-/// The table of coefficients.
-pub(super) fn coefficients(language: &dyn Language, terms: &[NamedTerm]) -> String {
+/// The table of coefficients of these names.
+pub(super) fn coefficients(language: &dyn Language, names: &[String], terms: &[Term]) -> String {
     if terms.is_empty() {
         // No language minds a number that nobody uses; C minds a table without any.
         return language.table_line(&language.number(0.0), "no terms");
     }
-    let line = |t: &NamedTerm| language.table_line(&language.number(t.term.coefficient), &harmless(&t.name));
-    terms.iter().map(line).collect::<Vec<_>>().join("\n")
+    let line =
+        |(name, term): (&String, &Term)| language.table_line(&language.number(term.coefficient), &harmless(name));
+    names.iter().zip(terms).map(line).collect::<Vec<_>>().join("\n")
 }
 
 /// The statements that add every term and its derivatives.
-pub(super) fn error_and_gain(language: &dyn Language, terms: &[NamedTerm]) -> String {
+pub(super) fn error_and_gain(language: &dyn Language, names: &[String], terms: &[Term]) -> String {
     let mut statements = Vec::new();
-    for (k, NamedTerm { name, term }) in terms.iter().enumerate() {
+    for (k, (name, term)) in names.iter().zip(terms).enumerate() {
         let value = product(language, k, (1.0, term.monomial));
         statements.push(language.add_to_error(term.axis, &value, &harmless(name)));
         for (j, derivative) in (0..3).filter_map(|j| Some((j, term.monomial.derivative(j)?))) {

@@ -10,7 +10,7 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 
 use centrical_compensate::{Compensation, Monomial, Term, reading};
-use centrical_report::codegen::{NamedTerm, compensation_source};
+use centrical_report::codegen::compensation_source;
 use centrical_session::OutputSummary;
 use tempfile::TempDir;
 
@@ -21,25 +21,28 @@ const G: f64 = 9.806_65;
 const RANGE: f64 = 200.0 * G;
 const READINGS: usize = 100_000;
 
+/// A term under the name of its coefficient.
+type Named = (String, Term);
+
 /// The source's terms at 5 mg, 1e-3, 1e-5 /g, 1e-7 /g^2, with signs that differ.
-fn kozlov() -> Vec<NamedTerm> {
+fn kozlov() -> Vec<Named> {
     let sizes = [5e-3 * G, 1e-3, 1e-5 / G, 1e-7 / (G * G)];
     let model = centrical::ErrorModel::kozlov_2017();
     let term = |(k, term): (usize, &centrical::Term)| {
         let size = sizes[usize::from(term.monomial.degree())];
         let coefficient = size * (1.0 + (k as f64 * 0.618).sin()) * if k % 3 == 0 { -1.0 } else { 1.0 };
         let term = Term { axis: term.axis, monomial: term.monomial, coefficient };
-        NamedTerm { name: model.terms[k].name.clone(), term }
+        (model.terms[k].name.clone(), term)
     };
     model.terms.iter().enumerate().map(term).collect()
 }
 
 /// The same with a product, an odd square, a kink and a fourth power, under the names that sessions give them.
-fn with_more_terms() -> Vec<NamedTerm> {
+fn with_more_terms() -> Vec<Named> {
     let mut terms = kozlov();
     let mut add = |axis, monomial, coefficient| {
         let name = centrical::Term::new(axis, monomial).name;
-        terms.push(NamedTerm { name, term: Term { axis, monomial, coefficient } });
+        terms.push((name, Term { axis, monomial, coefficient }));
     };
     add(0, Monomial::product(&[0, 1]), 1e-5 / G);
     add(1, Monomial::odd_square(1), -1e-5 / G);
@@ -54,7 +57,7 @@ type Axes = Option<[[f64; 3]; 3]>;
 /// Far from the newtonometers' axes, so that a transposed matrix shows.
 const TURNED: Axes = Some([[0.36, 0.48, -0.8], [-0.8, 0.6, 0.0], [0.48, 0.64, 0.6]]);
 
-fn models() -> [(&'static str, Vec<NamedTerm>, Axes); 4] {
+fn models() -> [(&'static str, Vec<Named>, Axes); 4] {
     [
         ("kozlov", kozlov(), None),
         ("with more terms", with_more_terms(), None),
@@ -64,15 +67,21 @@ fn models() -> [(&'static str, Vec<NamedTerm>, Axes); 4] {
 }
 
 /// A folder with the generated files, whose heading tries to break out of its comment.
-fn generate(terms: &[NamedTerm], axes: Axes) -> TempDir {
+fn generate(terms: &[Named], axes: Axes) -> TempDir {
     generate_for(terms, None, axes)
 }
 
 /// The same for a unit with raw output of its own.
-fn generate_for(terms: &[NamedTerm], output: Option<&OutputSummary>, axes: Axes) -> TempDir {
+fn generate_for(terms: &[Named], output: Option<&OutputSummary>, axes: Axes) -> TempDir {
     let folder = tempfile::tempdir().unwrap();
     let heading = ["TA-200 */ No. 0001 /* ??/\\".to_owned(), "line\nof \"\"\" a session @vectors@".to_owned()];
-    for file in compensation_source(&heading, terms, output, RANGE, axes.as_ref()).unwrap() {
+    let (names, plain): (Vec<String>, Vec<Term>) = terms.iter().cloned().unzip();
+    let compensation = Compensation::new(plain, RANGE).unwrap();
+    let compensation = match axes {
+        Some(axes) => compensation.in_axes(axes),
+        None => compensation,
+    };
+    for file in compensation_source(&heading, &names, &compensation, output) {
         fs::write(folder.path().join(file.name), file.text).unwrap();
     }
     folder
@@ -170,7 +179,7 @@ int main(int argc, char **argv) {
 }
 "#;
 
-fn check_c(compiler: &str, optimisation: &str, (name, terms, axes): (&str, &[NamedTerm], Axes)) {
+fn check_c(compiler: &str, optimisation: &str, (name, terms, axes): (&str, &[Named], Axes)) {
     let folder = generate(terms, axes);
     let at = |name: &str| folder.path().join(name);
     fs::write(at("main.c"), C_MAIN).unwrap();
@@ -179,7 +188,7 @@ fn check_c(compiler: &str, optimisation: &str, (name, terms, axes): (&str, &[Nam
     compile.args(["program", "main.c", "centrical_compensate.c"]).current_dir(&folder);
     run(&mut compile, "");
 
-    let plain: Vec<Term> = terms.iter().map(|t| t.term).collect();
+    let plain: Vec<Term> = terms.iter().map(|(_, term)| *term).collect();
     let readings = readings(&plain);
     let what = format!("{compiler} {optimisation}, {name}");
     let double = run(&mut Command::new(at("program")), &as_text(&readings));
@@ -271,7 +280,7 @@ fn octave() {
     }
     for (name, terms, axes) in models() {
         let folder = generate(&terms, axes);
-        let plain: Vec<Term> = terms.iter().map(|t| t.term).collect();
+        let plain: Vec<Term> = terms.iter().map(|(_, term)| *term).collect();
         let readings = readings(&plain);
         fs::write(folder.path().join("readings.txt"), as_text(&readings)).unwrap();
         fs::write(folder.path().join("main.m"), OCTAVE_MAIN).unwrap();
@@ -301,7 +310,7 @@ fn python() {
     }
     for (name, terms, axes) in models() {
         let folder = generate(&terms, axes);
-        let plain: Vec<Term> = terms.iter().map(|t| t.term).collect();
+        let plain: Vec<Term> = terms.iter().map(|(_, term)| *term).collect();
         let readings = readings(&plain);
         fs::write(folder.path().join("main.py"), PYTHON_MAIN).unwrap();
         let answers = run(Command::new("python3").args(["-B", "main.py"]).current_dir(&folder), &as_text(&readings));
@@ -365,7 +374,7 @@ fn numpy() {
     }
     for (name, terms, axes) in models() {
         let folder = generate_for(&terms, Some(&counts()), axes);
-        let plain: Vec<Term> = terms.iter().map(|t| t.term).collect();
+        let plain: Vec<Term> = terms.iter().map(|(_, term)| *term).collect();
         let readings = readings(&plain);
         fs::write(folder.path().join("main.py"), NUMPY_MAIN).unwrap();
         let answers = run(Command::new("python3").args(["-B", "main.py"]).current_dir(&folder), &as_text(&readings));
