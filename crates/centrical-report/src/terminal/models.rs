@@ -36,9 +36,9 @@ pub fn selection_table(selection: &ModelSelection) -> Screen {
         }
     };
     screen.gap();
-    screen.head("TERMS", "one by one");
-    screen.say(2, &format!("the data show: {}", named(true)));
-    screen.say(2, &format!("they do not show: {}", named(false)));
+    screen.head("TERMS", "each for itself");
+    screen.say(2, &format!("worth an unknown: {}", named(true)));
+    screen.say(2, &format!("not worth one: {}", named(false)));
     screen
 }
 
@@ -110,6 +110,11 @@ fn candidates(screen: &mut Screen, selection: &ModelSelection) {
     let hidden = selection.candidates.len() - shown.len();
     if hidden > 0 {
         screen.say(2, &format!("and {hidden} more with a higher BIC"));
+    }
+    if !selection.undetermined.is_empty() {
+        let names: Vec<String> = selection.undetermined.iter().map(|rival| rival.name()).collect();
+        let words = "not fitted, since the readings do not depend on them but through alignment errors";
+        screen.sentence(2, 4, &format!("{words}: {}; bounds under [uncertainty] state them", names.join(", ")));
     }
     screen.say(
         2,

@@ -23,6 +23,8 @@ pub struct ModelsReport {
     pub recommended: usize,
     /// The models, in the order in which they were fitted.
     pub candidates: Vec<CandidateSummary>,
+    /// Effects that are not fitted, since the data determine nothing of them where alignment errors vanish.
+    pub undetermined: Vec<String>,
     /// The optional terms one by one.
     pub terms: Vec<TermSupport>,
 }
@@ -90,6 +92,7 @@ impl ModelsReport {
             title: title.to_owned(),
             recommended: selection.recommended,
             candidates: selection.candidates.iter().map(CandidateSummary::of).collect(),
+            undetermined: selection.undetermined.iter().map(|rival| rival.name()).collect(),
             terms: selection.terms.iter().map(term).collect(),
         }
     }

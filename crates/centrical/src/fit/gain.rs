@@ -96,6 +96,12 @@ impl Gain {
         &self.basis
     }
 
+    /// How much of the unknowns the equations determine without those that hold null directions: the trace of `Q Q^T` over the others. With the rank
+    /// of the design at `X = 0` and the influences taken from it, the combinations remain that second-order traces determine at the estimate.
+    pub(crate) fn leverage(&self) -> f64 {
+        self.equations.basis(self.residuals.len()).norm_squared()
+    }
+
     /// Changes of the estimates, `p x m`, by changes `dy` of the readings with `Q^T W dy = followed`.
     pub(crate) fn shifts(&self, followed: &DMatrix<f64>) -> DMatrix<f64> {
         self.parameters_of(followed)

@@ -44,8 +44,10 @@ pub struct FittedCandidate {
     pub chi_squared: f64,
     /// Its degrees of freedom.
     pub degrees_of_freedom: usize,
-    /// `chi^2 + rank ln n`.
+    /// `chi^2 + (rank + traced) ln n`.
     pub bic: f64,
+    /// Combinations beyond the rank that second-order traces determine at the estimate, in part or in whole: the fit follows them too.
+    pub traced: f64,
     /// Score of the prediction of each mounting from the others ([`Validity::hold_out_score`]): the lower the better.
     pub hold_out_score: f64,
     /// Test against the largest candidate nested in it, if there is one.
@@ -72,6 +74,8 @@ pub struct ModelSelection {
     pub candidates: Vec<FittedCandidate>,
     /// Index of the candidate recommended: the lowest BIC of those that converged, the simplest of those alike.
     pub recommended: usize,
+    /// Rivals that the data determine nothing of at `X = 0`: they are no candidates.
+    pub undetermined: Vec<Rival>,
     /// The optional terms one by one: those of the recommended model, then those that richer candidates have beyond it.
     pub terms: Vec<TermVerdict>,
 }
@@ -133,7 +137,7 @@ impl ModelSelection {
         let single = candidates_of(model);
         let data = data_of(&single, observations)?;
         let mut fits = fits(&single, &data, progress)?;
-        let paired = pairs(model, &fits);
+        let paired = pairs(model, &fits)?;
         let data_of_pairs = data_of(&paired, observations)?;
         fits.extend(self::fits(&paired, &data_of_pairs, progress)?);
         conclude(&fits)
@@ -157,21 +161,24 @@ impl ModelSelection {
 const PAIRED: usize = 3;
 
 /// The model with pairs of the rivals that lower BIC most by themselves.
-fn pairs(model: &MeasurementModel, single: &[(&Candidate, Calibration)]) -> Vec<Candidate> {
-    let bic_of = |calibration: &Calibration| bic(calibration.fit(), calibration.data().observations().len());
-    let as_stated = single.iter().find(|(candidate, _)| candidate.name == AS_STATED).map(|(_, fit)| bic_of(fit));
-    let lowered = |(candidate, calibration): &(&Candidate, Calibration)| match candidate.rivals[..] {
-        [rival] => Some((bic_of(calibration), rival)).filter(|(bic, _)| as_stated.is_some_and(|stated| *bic < stated)),
+fn pairs(model: &MeasurementModel, single: &[(&Candidate, Calibration)]) -> Result<Vec<Candidate>, FitError> {
+    let mut bics = Vec::with_capacity(single.len());
+    for (candidate, calibration) in single {
+        bics.push((candidate, bic(calibration.fit(), calibration.data(), traced(calibration)?)));
+    }
+    let as_stated = bics.iter().find(|(candidate, _)| candidate.name == AS_STATED).map(|(_, bic)| *bic);
+    let lowered = |(candidate, bic): &(&&Candidate, f64)| match candidate.rivals[..] {
+        [rival] => Some((*bic, rival)).filter(|_| as_stated.is_some_and(|stated| *bic < stated)),
         _ => None,
     };
-    let mut lower: Vec<(f64, Rival)> = single.iter().filter_map(lowered).collect();
+    let mut lower: Vec<(f64, Rival)> = bics.iter().filter_map(lowered).collect();
     lower.sort_by(|a, b| a.0.total_cmp(&b.0));
     lower.truncate(PAIRED);
     let with_later = |(n, (_, first)): (usize, &(f64, Rival))| {
         let later = lower[n + 1..].iter();
         later.map(|(_, second)| with_rivals(model, vec![*first, *second])).collect::<Vec<_>>()
     };
-    lower.iter().enumerate().flat_map(with_later).collect()
+    Ok(lower.iter().enumerate().flat_map(with_later).collect())
 }
 
 /// The plateaus with the model of each candidate.
@@ -195,7 +202,11 @@ fn fits<'c>(
 
 /// Compares the fits.
 fn conclude(fits: &[(&Candidate, Calibration)]) -> Result<ModelSelection, FitError> {
-    let fits = with_further_unknowns(fits);
+    let all = fits;
+    let fits = with_further_unknowns(all);
+    let is_kept = |rivals: &[Rival]| fits.iter().any(|(candidate, _)| candidate.rivals == rivals);
+    let single = all.iter().filter_map(|(candidate, _)| <[Rival; 1]>::try_from(candidate.rivals.as_slice()).ok());
+    let undetermined = single.filter(|rival| !is_kept(rival)).flatten().collect();
     let mut fitted: Vec<FittedCandidate> = fits
         .iter()
         .map(|(candidate, calibration)| candidate_fitted(candidate, calibration))
@@ -216,12 +227,12 @@ fn conclude(fits: &[(&Candidate, Calibration)]) -> Result<ModelSelection, FitErr
     let best = Best(&fits[recommended].1);
     let mut terms = best.own_terms();
     terms.extend(best.further_terms(&candidates)?);
-    Ok(ModelSelection { candidates: fitted, recommended, terms })
+    Ok(ModelSelection { candidates: fitted, recommended, undetermined, terms })
 }
 
 fn candidate_fitted(candidate: &Candidate, calibration: &Calibration) -> Result<FittedCandidate, FitError> {
     let (fit, data) = (calibration.fit(), calibration.data());
-    let rank = fit.observability().rank();
+    let (rank, traced) = (fit.observability().rank(), traced(calibration)?);
     Ok(FittedCandidate {
         name: candidate.name.clone(),
         rivals: candidate.rivals.clone(),
@@ -230,15 +241,27 @@ fn candidate_fitted(candidate: &Candidate, calibration: &Calibration) -> Result<
         converged: fit.termination == Termination::Converged,
         chi_squared: fit.chi_squared,
         degrees_of_freedom: fit.degrees_of_freedom,
-        bic: bic(fit, data.observations().len()),
+        bic: bic(fit, data, traced),
+        traced,
         hold_out_score: calibration.validity()?.hold_out_score(),
         against: None,
     })
 }
 
-/// `chi^2 + k ln n` for `k` unknowns determined and `n` readings, three per plateau (Schwarz).
-fn bic(fit: &Fit, plateaus: usize) -> f64 {
-    fit.chi_squared + fit.observability().rank() as f64 * (3.0 * plateaus as f64).ln()
+/// Combinations beyond the rank that a fit follows: the lost ones, as far as second-order traces determine them at the estimate.
+fn traced(calibration: &Calibration) -> Result<f64, FitError> {
+    let seen = calibration.fit().observability();
+    if seen.lost() == 0 {
+        return Ok(0.0);
+    }
+    let followed = seen.rank() + calibration.data().model().influences().len();
+    Ok((calibration.gain()?.leverage() - followed as f64).clamp(0.0, seen.lost() as f64))
+}
+
+/// `chi^2 + k ln n` for `k` combinations that the fit follows and `n` readings, three per plateau (Schwarz).
+fn bic(fit: &Fit, data: &Data, traced: f64) -> f64 {
+    let followed = fit.observability().rank() as f64 + traced;
+    fit.chi_squared + followed * (3.0 * data.observations().len() as f64).ln()
 }
 
 /// The candidates whose unknowns are a part of those of candidate `n`, and those before it that have the same.
@@ -264,11 +287,13 @@ fn with_further_unknowns<'f, 'c>(
 fn nested_test(candidates: &[&Candidate], fitted: &[FittedCandidate], n: usize) -> Option<NestedTest> {
     let determines_less = |m: &usize| fitted[*m].rank < fitted[n].rank;
     let nested = nested_in(candidates, n).into_iter().filter(determines_less).max_by_key(|&m| fitted[m].rank)?;
-    let further = fitted[n].rank - fitted[nested].rank;
-    let left = fitted[n].degrees_of_freedom;
-    let f =
-        ((fitted[nested].chi_squared - fitted[n].chi_squared) / further as f64) / (fitted[n].chi_squared / left as f64);
-    Some(NestedTest { nested, f, further, probability: f_tail(f, further as f64, left as f64) })
+    let (simple, rich) = (&fitted[nested], &fitted[n]);
+    let further = rich.rank - simple.rank;
+    // Counted by the rank alone, what traces of lost combinations explain by chance would pass for a gain.
+    let followed = further as f64 + (rich.traced - simple.traced).max(0.0);
+    let left = rich.degrees_of_freedom as f64 - rich.traced;
+    let f = ((simple.chi_squared - rich.chi_squared) / followed) / (rich.chi_squared / left);
+    Some(NestedTest { nested, f, further, probability: f_tail(f, followed, left) })
 }
 
 /// The calibration with the recommended model.
