@@ -59,7 +59,7 @@ impl Certificate {
         let gain_change = over(UNIQUE_REGION).gain_change();
         let margin = largest_factor(|factor| over(factor * UNIQUE_REGION).is_certain(factor));
         if margin < 1.0 {
-            return Err(NotInvertible::TooNonlinear { gain_change, limit: GAIN_CHANGE_LIMIT, factor: margin });
+            return Err(NotInvertible::TooNonlinear { gain_change, limit: GAIN_CHANGE_LIMIT, factor: margin, range });
         }
         Ok(Self { range, gain_change, margin, start: over(1.0).shift, bounds: over(START_REGION) })
     }

@@ -44,7 +44,9 @@ pub enum NotInvertible {
     /// The non-linear terms are too strong for the range.
     #[error(
         "over twice the range the gain changes by up to {gain_change:.3} of the gain at zero, expected at most \
-         {limit:.3}: the inverse is certain over {factor:.3} of this range"
+         {limit:.3}: the inverse is certain over {factor:.3} of this range, within {:.1} m/s^2",
+        // Rounded up it would not be certain there.
+        0.999 * factor * range
     )]
     TooNonlinear {
         /// Bound on the change of gain.
@@ -53,6 +55,8 @@ pub enum NotInvertible {
         limit: f64,
         /// Part of the range over which the inverse is certain.
         factor: f64,
+        /// The range [m/s^2].
+        range: f64,
     },
 }
 

@@ -27,7 +27,7 @@ pub fn assessment_text(assessment: &Assessment, coverage: f64, correlations: boo
     validity_text(&mut screen, model.experiment(), validity, patterns);
     screen.gap();
     match prediction {
-        Some(curves) => prediction_table(&mut screen, curves),
+        Some(curves) => prediction_table(&mut screen, curves, result.calibrated_range()),
         None => screen.head("PREDICTION", "none: not all parameters of the instrument are determined"),
     }
     screen.gap();
@@ -193,8 +193,8 @@ fn plateau(experiment: &Experiment, index: usize) -> String {
     format!("mounting {}, plateau {}, {speed:.1} rpm", set_point.mounting + 1, before + 1)
 }
 
-/// Standard uncertainty of a compensated reading along each instrument axis, as a table.
-fn prediction_table(screen: &mut Screen, curves: &[Vec<CurvePoint>; 3]) {
+/// Standard uncertainty of a compensated reading along each instrument axis, as a table; beyond what was `calibrated` [m/s^2] by the model alone.
+fn prediction_table(screen: &mut Screen, curves: &[Vec<CurvePoint>; 3], calibrated: f64) {
     screen.head("PREDICTION", "standard uncertainty of a compensated reading, calibration alone, in ug");
     let titles = ["specific force", "along axis 1", "along axis 2", "along axis 3"];
     let mut table = Table::new(1, &[(Align::Right, &titles)]);
@@ -204,4 +204,12 @@ fn prediction_table(screen: &mut Screen, curves: &[Vec<CurvePoint>; 3]) {
         table.row([force.into()].into_iter().chain(curves.iter().map(along)));
     }
     screen.table(table);
+    if curves[0].last().is_some_and(|point| point.force > 1.01 * calibrated) {
+        let words = format!(
+            "beyond {:.0} g, the largest reading of the session, the error model is extrapolated: terms that it leaves out count \
+             as absent there",
+            calibrated / STANDARD_GRAVITY
+        );
+        screen.sentence(2, 2, &words);
+    }
 }

@@ -171,7 +171,8 @@ fn goals(screen: &mut Screen, report: &PlanReport) {
         return;
     }
     screen.gap();
-    screen.head("GOALS", "standard uncertainties");
+    let of = if report.for_typical { "of typical errors" } else { "without errors; with errors some are larger" };
+    screen.head("GOALS", &format!("standard uncertainties to be expected of a unit {of}"));
     let numbers = ["wanted", "type A", "combined"];
     let mut table = Table::new(2, &[(Align::Left, &["", "unit"]), (Align::Right, &numbers), (Align::Words, &[""])]);
     for goal in &report.goals {

@@ -90,7 +90,8 @@ impl MeasurementModel {
     /// The rivals that the model leaves out, neither unknown nor stated: of the session, of each of its mountings, and of each speed that is set
     /// more than once and not measured. Where there are more than a hundred mountings, or speeds, single ones are not asked for. Rests alone are
     /// asked for a step before each of up to a hundred, and a wander of the biases: on an arm each mounting is asked. They are
-    /// not asked for further terms of third degree: at 1 g errors of the attitudes look like them and are far larger.
+    /// not asked for squares and further terms of third degree of other components: at 1 g errors of the attitudes look like them and are far
+    /// larger.
     pub fn left_out(&self) -> Vec<Rival> {
         let common = Rival::COMMON.into_iter().zip(self.stated.effects).filter(|(_, u)| *u == 0.0);
         let of_mounting = |mounting: usize| {
@@ -108,7 +109,7 @@ impl MeasurementModel {
         let steps = steps.filter(|_| self.experiment.set_points.len() <= MOST_SINGLE);
         let step = |first: usize| Rival::Effect(Extension::Disturbance(Course::From(first)));
         let is_of_other = |rival: &Rival| match rival {
-            Rival::Terms(Extra::CrossCubes | Extra::CubicProducts) => !has_arm,
+            Rival::Terms(Extra::CrossSquares | Extra::CrossCubes | Extra::CubicProducts) => !has_arm,
             Rival::Effect(Extension::BiasWander) => has_arm,
             _ => false,
         };
