@@ -25,7 +25,7 @@ pub use self::outputs::{Outputs, refuse_inputs};
 use self::parquet::{Layout, ParquetTable};
 use self::row_groups::RowGroups;
 pub use self::typed::TypedWriter;
-use crate::error::Error;
+use crate::error::{Error, Place};
 use crate::stamp::Stamps;
 
 /// How a table is written.
@@ -39,10 +39,9 @@ pub enum TableFormat {
 }
 
 impl TableFormat {
-    /// The format that the name of a file asks for: Parquet where it ends in `.parquet`, otherwise text.
+    /// The format that the name of a file asks for: Parquet where it ends in `.parquet` or `.pq`, otherwise text.
     pub fn of(file: &Path) -> Self {
-        let is_parquet = file.extension().is_some_and(|e| e.eq_ignore_ascii_case("parquet"));
-        if is_parquet { Self::Parquet } else { Self::Csv }
+        if ends_in(file, &["parquet", "pq"]) { Self::Parquet } else { Self::Csv }
     }
 
     /// How names of such files end.
@@ -52,6 +51,14 @@ impl TableFormat {
             Self::Parquet => "parquet",
         }
     }
+}
+
+/// Endings of formats that are read, and not written: text under such a name would deceive.
+const READ_ALONE: [&str; 13] =
+    ["gz", "zst", "xlsx", "xls", "ods", "arrow", "feather", "npy", "npz", "mat", "h5", "hdf5", "tdms"];
+
+fn ends_in(file: &Path, endings: &[&str]) -> bool {
+    file.extension().is_some_and(|own| endings.iter().any(|ending| own.eq_ignore_ascii_case(ending)))
 }
 
 /// Writes a long table beside the file, piece by piece, and renames at the end: whoever looks sees the whole table or none.
@@ -115,6 +122,10 @@ impl<const N: usize> TableWriter<N> {
 impl OpenTable {
     fn create(file: &Path, names: &[&str], decimals: &[Decimals]) -> Result<Self, Error> {
         let failed = |error| Error::writing(file, error);
+        if ends_in(file, &READ_ALONE) {
+            let expected = "a name that ends in .csv, or in .parquet";
+            return Err(Error::content(file, Place::Whole, "the name of a format that is not written", expected));
+        }
         let (beside, output) = Beside::create(file).map_err(failed)?;
         let output = SteadyFile::new(output).map_err(failed)?;
         let table = match TableFormat::of(file) {

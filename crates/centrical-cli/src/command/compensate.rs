@@ -18,7 +18,7 @@ pub struct Arguments {
     result: PathBuf,
     /// The record: CSV or Parquet with t [s] and f1, f2, f3 in the unit of the calibration's records, unless --session says otherwise
     record: PathBuf,
-    /// Output file: Parquet if its name ends in .parquet, CSV otherwise
+    /// Output file: Parquet if its name ends in .parquet or .pq, CSV otherwise
     #[arg(short, long, value_name = "FILE")]
     out: PathBuf,
     /// The session whose experiment.toml names the record's columns and units

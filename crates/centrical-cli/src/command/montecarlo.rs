@@ -45,8 +45,7 @@ fn runs(text: &str) -> Result<usize, String> {
 
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
-    let inside = arguments.session.join("experiment.toml");
-    let file = if arguments.session.is_dir() { &inside } else { &arguments.session };
+    let file = &arguments.session;
     let mut case = if let Some(plan) = read_plan(file)? {
         MonteCarloCase::planned(plan, arguments.noise)?
     } else {

@@ -238,6 +238,20 @@ fn a_session_of_another_output_is_refused() {
     assert!(output.status.code() == Some(2) && text(&output).contains(expected), "{}", text(&output));
 }
 
+/// Text under the name of a packed file or a workbook would deceive its reader.
+#[test]
+fn formats_that_are_not_written_are_refused() {
+    let copy = calibrated();
+    for name in ["f.csv.gz", "f.xlsx", "f.npy"] {
+        let output = compensate(&copy, &[name]);
+        let expected =
+            format!("{name}: found the name of a format that is not written, expected a name that ends in .csv");
+        assert!(output.status.code() == Some(2) && text(&output).contains(&expected), "{}", text(&output));
+    }
+    assert!(compensate(&copy, &["f.pq"]).status.success());
+    assert!(fs::read(copy.out().join("f.pq")).unwrap().starts_with(b"PAR1"));
+}
+
 /// A record in g is read in the unit of the calibration's records, and FLT_MAX among its readings is one spike.
 #[test]
 fn readings_are_in_the_unit_of_the_records() {

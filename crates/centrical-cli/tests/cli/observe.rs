@@ -1,5 +1,7 @@
 //! `centrical observe` on sessions and plans.
 
+use std::fmt::Write as _;
+use std::fs;
 use std::path::Path;
 
 use serde_json::Value;
@@ -49,6 +51,55 @@ fn plan_of_ones_own() {
     assert_eq!(named("drho_22")["rests_on_prior"], true);
     assert!((named("drho_22")["prior"]["posterior_over_prior"].as_f64().unwrap() - 1.0).abs() < 1e-3);
     assert_eq!(named("G1_22")["estimable"], false);
+    // The folder of a plan stands for it, as that of a session does.
+    fs::copy(plan("four-positions.toml"), copy.out().join("experiment.toml")).unwrap();
+    assert_eq!(json(&copy, &["observe", "."]).0["parameters"], report["parameters"]);
+}
+
+/// A plan of five positions on one radius, with a prior.
+const FIVE_POSITIONS: &str = r#"
+[session]
+title = "five positions"
+[site]
+gravity = 9.81523
+latitude = "55.7 deg"
+[unit]
+output_unit = "m/s^2"
+proof_masses = [[0.0, 0.0, 0.0], [0.021, 0.012, 0.0105], [0.015, -0.01, -0.014]]
+[centrifuge]
+speed_uncertainty = 1e-5
+rotation = "+3"
+[model]
+error_model = "kozlov-2017"
+pair_relation = "common"
+[plan]
+noise = "20 ug/sqrt(Hz)"
+floor = "1 ug"
+[prior]
+"delta_3[2]" = 1e-4
+[schedule]
+plateaus = [{ speed = 39.62595533727925, duration = 60.0 }, { speed = 62.653829488092434, duration = 60.0 }]
+"#;
+
+/// The search for the simplest null directions ends, though the sums that cancel a term bring it back when they are made anew.
+#[test]
+fn the_search_for_the_simplest_null_directions_ends() {
+    let copy = Copy::new();
+    let positions = [
+        ("1", "+1 +2 +3", "A"),
+        ("2", "-1 -2 +3", "A"),
+        ("4", "+3 -1 -2", "B"),
+        ("5", "-2 -3 +1", "C"),
+        ("6", "+2 -3 -1", "C"),
+    ];
+    let mut text = FIVE_POSITIONS.to_owned();
+    for (id, axes, pair) in positions {
+        writeln!(text, "[[position]]\nid = \"{id}\"\naxes = \"{axes}\"\npair = \"{pair}\"").unwrap();
+        writeln!(text, "[[mounting]]\nposition = \"{id}\"\narm = [0.5, 0, 0]").unwrap();
+    }
+    fs::write(copy.out().join("plan.toml"), text).unwrap();
+    let (report, code) = json(&copy, &["observe", "plan.toml"]);
+    assert!(code == Some(1) && report["rank"].as_u64() < report["columns"].as_u64(), "{}", report["rank"]);
 }
 
 /// A session is weighted by its data; the same bytes twice.
@@ -93,4 +144,9 @@ fn refusals() {
     assert!(message.contains("character 11: found \"drho_44\", expected a parameter such as drho_22"), "{message}");
     let run = copy.run(&["observe", "missing.toml"]);
     assert_eq!(run.status.code(), Some(2));
+    let message = String::from_utf8(copy.run(&["observe", &plan("best.toml")]).stderr).unwrap();
+    assert!(
+        message.contains("found [candidates] without a schedule, expected a schedule in [[mounting]]"),
+        "{message}"
+    );
 }

@@ -126,8 +126,7 @@ pub fn montecarlo(
     let request = MonteCarloRequest { runs, seed, coverage: probability("coverage", coverage)?, linear };
     progress::run(py, &shown, |work| {
         let plan = match &subject {
-            GivenSession::Path(folder) if folder.is_dir() => read_plan(&folder.join("experiment.toml"))?,
-            GivenSession::Path(file) => read_plan(file)?,
+            GivenSession::Path(path) => read_plan(path)?,
             GivenSession::InMemory(..) => None,
         };
         let mut case = if let Some(plan) = plan {

@@ -11,7 +11,7 @@ use super::plan::{ExpectedValues, earlier, expected_of, noise, noise_density, no
 use super::prior;
 use super::rests::RestTable;
 use super::schedule::{FASTEST, duration};
-use super::session::{Session, named_extensions, read_text};
+use super::session::{Session, experiment_file, named_extensions, read_text};
 use super::toml_path::TomlPath;
 use crate::error::{Error, quoted};
 use crate::quantity::{NotThatQuantity, Quantity};
@@ -53,6 +53,7 @@ impl Planning {
     /// # Errors
     /// If the file cannot be read, does not follow the form or makes no sense, or has no `[candidates]`.
     pub fn read(path: &Path, time: Option<f64>) -> Result<Self, Error> {
+        let path = &experiment_file(path);
         let mut form = from_toml::<Form>(path, &read_text(path)?)?.with_schedules();
         let at = TomlPath::table(path, "candidates");
         form.mounting = mountings(&at, &form)?;

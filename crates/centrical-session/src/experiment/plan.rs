@@ -12,12 +12,12 @@ use serde::Deserialize;
 use super::folder::Folder;
 use super::form::{Form, PlanTable, PresetForm, PresetTable};
 use super::rests::{self, RestTable};
-use super::session::{Session, extensions, pair_relation, read_text};
+use super::session::{Session, experiment_file, extensions, pair_relation, read_text};
 use super::speeds::preset_speeds;
 use super::toml_path::TomlPath;
 use super::uncertainty::ANY_BIAS;
 use super::{prior, schedule, terms};
-use crate::error::{Error, quoted};
+use crate::error::{Error, Place, quoted};
 use crate::quantity::Quantity;
 use crate::settings::from_toml;
 use crate::units::Dimension;
@@ -91,15 +91,13 @@ impl Probe {
 }
 
 impl PlannedSession {
-    /// Reads a plan; `None` if the file is a session with records or plateaus of its own, or a folder.
+    /// Reads a plan, a file or the folder of one; `None` if it is a session with records or plateaus of its own.
     ///
     /// # Errors
     /// If the file cannot be read, does not follow the form or makes no sense, as for [`Session::read`]. Unlike a session
     /// a plan may rest all the time.
     pub fn read(path: &Path) -> Result<Option<Self>, Error> {
-        if path.is_dir() {
-            return Ok(None);
-        }
+        let path = &experiment_file(path);
         let text = read_text(path)?;
         let probe: Probe = from_toml(path, &text)?;
         if probe.plan.as_ref().is_some_and(|plan| plan.preset.is_some()) {
@@ -109,6 +107,10 @@ impl PlannedSession {
             return Ok(None);
         }
         let form = from_toml::<Form>(path, &text)?.with_schedules();
+        if form.candidates.is_some() && form.mounting.is_empty() && !form.position.is_empty() {
+            let expected = "a schedule in [[mounting]], which the command plan makes of candidates";
+            return Err(Error::content(path, Place::Whole, "[candidates] without a schedule", expected));
+        }
         Self::of_form(path, &form).map(Some)
     }
 

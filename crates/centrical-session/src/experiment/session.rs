@@ -306,7 +306,7 @@ fn refuse_missing_keys(file: &Path, form: &Form) -> Result<(), Error> {
 }
 
 /// The experiment file of a session's folder, or the file itself.
-fn experiment_file(path: &Path) -> PathBuf {
+pub(super) fn experiment_file(path: &Path) -> PathBuf {
     if path.is_dir() { path.join(EXPERIMENT_FILE) } else { path.to_owned() }
 }
 

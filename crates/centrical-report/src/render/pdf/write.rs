@@ -1,5 +1,6 @@
 //! From pages to the bytes of a file: fonts embedded, streams compressed, no date, no random identifier.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 use centrical_session::harmless_line;
@@ -55,19 +56,36 @@ pub(super) fn write(mut layout: Layout, document: &Document) -> Vec<u8> {
 
 /// Head and foot of a page.
 fn furnish(page: &mut Content, font: &Font, margins: &Margins, number: &str) {
-    const SMALL: f32 = 8.0;
     let (high, low) = (PAGE.1 - TOP + 22.0, BOTTOM - 24.0);
-    let mut at = |text: &str, is_right: bool, y: f32| {
-        let x = if is_right { LEFT + WIDTH - font.width(text, SMALL) } else { LEFT };
-        show(page, &encoded(font, text), Weight::Regular, SMALL, x, y);
+    let mut line = |left: &str, right: &str, y: f32| {
+        let right = fitted(font, right, 0.5 * WIDTH);
+        let from = LEFT + WIDTH - font.width(&right, SMALL);
+        let left = fitted(font, left, from - LEFT - APART);
+        for (text, x) in [(left, LEFT), (right, from)] {
+            show(page, &encoded(font, &text), Weight::Regular, SMALL, x, y);
+        }
     };
-    at(&margins.head[0], false, high);
-    at(&margins.head[1], true, high);
-    at(&margins.foot, false, low);
-    at(number, true, low);
+    line(&margins.head[0], &margins.head[1], high);
+    line(&margins.foot, number, low);
     for y in [high - 6.0, low + 12.0] {
         page.set_line_width(0.5).move_to(LEFT, y).line_to(LEFT + WIDTH, y).stroke();
     }
+}
+
+/// Size of the texts in margins [points].
+const SMALL: f32 = 8.0;
+
+/// Least distance between two texts of a line [points].
+const APART: f32 = 12.0;
+
+/// A text of a margin, or its beginning where it is too wide.
+fn fitted<'t>(font: &Font, text: &'t str, width: f32) -> Cow<'t, str> {
+    if font.width(text, SMALL) <= width {
+        return Cow::Borrowed(text);
+    }
+    let cut = |end: usize| format!("{}…", text[..end].trim_end());
+    let fits = text.char_indices().map(|(end, _)| cut(end)).take_while(|cut| font.width(cut, SMALL) <= width);
+    fits.last().unwrap_or_default().into()
 }
 
 /// What pages show.
@@ -158,4 +176,22 @@ fn characters(font: &Font) -> BTreeMap<u16, char> {
         });
     }
     characters
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The name of a laboratory that is wider than the page ends before the number of the certificate.
+    #[test]
+    fn a_text_of_a_margin_is_cut_to_its_width() {
+        let font = Font::new(Weight::Regular);
+        assert_eq!(fitted(&font, "Laboratory", WIDTH), "Laboratory");
+        let long = "Всероссийский институт метрологии ".repeat(10);
+        for width in [0.0, 40.0, 0.5 * WIDTH, WIDTH] {
+            let cut = fitted(&font, &long, width);
+            assert!(font.width(&cut, SMALL) <= width && (cut.ends_with('…') || cut.is_empty()), "{cut}");
+            assert!(width < 40.0 || font.width(&cut, SMALL) > width - 3.0 * SMALL, "{cut}");
+        }
+    }
 }
