@@ -5,6 +5,7 @@ mod simulate;
 
 use std::path::{Path, PathBuf};
 
+use centrical::Rival;
 use centrical_session::{
     Axes, Column, ColumnName, Columns, Folder, RecordReader, Scale, Session, Tumble, TumbleRequest, tumble, unwatched,
 };
@@ -214,8 +215,10 @@ fn units_turned_by_hand_are_as_their_owners_say() {
         let rms = (misfits.iter().map(|misfit| misfit * misfit).sum::<f64>() / misfits.len() as f64).sqrt();
         assert!((owned.misfit[0]..owned.misfit[1]).contains(&rms), "{}: {rms}", owned.file);
         assert!(result.objections().is_empty(), "{}: {:?}", owned.file, result.objections());
-        // Squares of the reading do not show in these units.
-        let suspects = result.validity.as_ref().unwrap();
-        assert!(suspects.rivals.iter().all(|rival| rival.probability > 0.05), "{}", owned.file);
+        // Squares of the reading do not show in these units. A bias that changed by 0.2 mg in a session of eight minutes may.
+        for suspect in &result.validity.as_ref().unwrap().rivals {
+            let least = if matches!(suspect.rival(), Some(Rival::Terms(_))) { 0.05 } else { 0.01 };
+            assert!(suspect.probability > least, "{} {}: {}", owned.file, suspect.name, suspect.probability);
+        }
     }
 }
