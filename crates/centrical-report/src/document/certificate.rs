@@ -41,7 +41,7 @@ impl Issuer {
                 Some(format!("{days}, expected the day of the session between them, {day}"))
             }
             Err(expected) if !result.session.date.is_empty() => {
-                Some(format!("{days} beside a session of {:?}, {expected} there", result.session.date))
+                Some(format!("{days} beside a session whose date is no day, {expected}"))
             }
             _ => None,
         }

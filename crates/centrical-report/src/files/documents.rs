@@ -200,18 +200,19 @@ pub fn write_noise(analysis: &NoiseAnalysis, folder: &Path) -> Result<(), Error>
 
 /// A history that somebody names: with a line at least, which one that is just begun need not have.
 fn lines_of_history(file: &Path, result: &CalibrationResult) -> Result<Vec<HistoryEntry>, Error> {
-    /// Estimates of a part of a session and of the whole do not lie farther apart, in standard uncertainties of the part.
+    /// Estimates of a part of a session and of the whole do not lie farther apart, in their standard uncertainties together.
     const FARTHEST: f64 = 10.0;
     let lines = read_history(file)?;
     let Some(last) = lines.last() else {
         return Err(Error::content(file, Place::Whole, "no whole line", "the history of a watch"));
     };
+    // The model may have gained or lost unknowns since.
     let agrees = |estimate: &HistoryEstimate| {
-        let own = result.parameter(&estimate.name)?;
-        let Some((value, u)) = estimate.value.zip(estimate.standard_uncertainty) else { return Some(true) };
-        Some(own.value.is_none_or(|own| (own - value).abs() <= FARTHEST * u))
+        let own = result.parameter(&estimate.name).and_then(|own| own.value.zip(own.standard_uncertainty));
+        let pair = own.zip(estimate.value.zip(estimate.standard_uncertainty));
+        pair.is_none_or(|((own, u), (value, of_part))| (own - value).abs() <= FARTHEST * u.hypot(of_part))
     };
-    let is_of_result = last.plateau <= result.plateaus.len() && last.estimates.iter().all(|e| agrees(e) == Some(true));
+    let is_of_result = last.plateau <= result.plateaus.len() && last.estimates.iter().all(agrees);
     if is_of_result {
         return Ok(lines);
     }
