@@ -31,6 +31,7 @@ mod rival;
 mod share;
 mod single_rest;
 mod stated;
+mod unknowns;
 
 pub use course::{Course, Law};
 pub use effect::Effect;
