@@ -43,8 +43,8 @@ pub fn compare_results(
     Ok(ComparisonReport::new(results, pairs.collect::<Result<_, _>>()?))
 }
 
-/// The result in `file` as it stands beside another one of its unit, `other` in `of`: with estimates relative to the nominal raw output of that.
-/// Its covariance and its readings stay as they are.
+/// The result in `file` with its estimates relative to the nominal raw output of `other`, a result of the same unit in `of`. Its covariance and
+/// its readings stay as they are.
 ///
 /// # Errors
 /// [`Error`] when its output is in another unit.

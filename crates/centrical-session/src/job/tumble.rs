@@ -238,7 +238,7 @@ fn record(request: &TumbleRequest, file: &Path, progress: OnProgress) -> Result<
     let mut equal = EqualColumns::of(request.readings.each_ref().map(ToString::to_string));
     equal.see(record.as_slice().f_z);
     equal.refuse(file)?;
-    record.t.first().zip(record.t.last()).map_or(Ok(()), |(from, to)| refuse_years(file, [*from, *to]))?;
+    refuse_years(file, record.t.first().copied(), record.t.last().copied())?;
     Ok(record)
 }
 

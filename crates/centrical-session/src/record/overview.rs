@@ -49,14 +49,15 @@ impl RecordOverview {
     }
 }
 
-/// Refuses the record in `file` from one time to another [s] if it lasts for years: its time is in another unit.
+/// Refuses the record in `file` if it lasts for years from its first time to the last [s]: its time is in another unit.
 ///
 /// # Errors
 /// [`Error`] with the length.
-pub(crate) fn refuse_years(file: &Path, [from, to]: [f64; 2]) -> Result<(), Error> {
+pub(crate) fn refuse_years(file: &Path, first: Option<f64>, last: Option<f64>) -> Result<(), Error> {
     /// Longest record of a laboratory [years].
     const LONGEST: f64 = 10.0;
-    let years = (to - from) / (DAYS_IN_YEAR * 86_400.0);
+    let length = first.zip(last).map_or(0.0, |(first, last)| last - first);
+    let years = length / (DAYS_IN_YEAR * 86_400.0);
     if years <= LONGEST {
         return Ok(());
     }

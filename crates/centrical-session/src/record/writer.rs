@@ -1,4 +1,4 @@
-//! Records out, stretch by stretch: CSV, or Parquet where the file's name ends in `.parquet`.
+//! Records out, stretch by stretch: CSV, or Parquet where the file's name ends in `.parquet` or `.pq`.
 
 use std::path::Path;
 

@@ -105,8 +105,8 @@ impl MeasurementModel {
         let is_asked = |k: &usize| speeds.len() <= MOST_SINGLE && speeds[*k].1 > 1;
         let speeds = (0..speeds.len()).filter(is_asked).map(of_speed);
         let has_arm = self.experiment.has_arm();
-        let steps = 1..if has_arm { 0 } else { self.experiment.set_points.len() };
-        let steps = steps.filter(|_| self.experiment.set_points.len() <= MOST_SINGLE);
+        let plateaus = self.experiment.set_points.len();
+        let steps = (1..plateaus).filter(|_| !has_arm && plateaus <= MOST_SINGLE);
         let step = |first: usize| Rival::Effect(Extension::Disturbance(Course::From(first)));
         let is_of_other = |rival: &Rival| match rival {
             Rival::Terms(Extra::CrossSquares | Extra::CrossCubes | Extra::CubicProducts) => !has_arm,

@@ -11,7 +11,7 @@ use nalgebra::Vector3;
 
 use super::rivals::columns::Columns;
 use super::verdict::Level;
-use crate::fit::{Calibration, Data, Fit, Termination};
+use crate::fit::{Calibration, Data, Termination};
 use crate::model::{ErrorModel, FitError, Kind, MeasurementModel, Observation, Parameter, Rival};
 use crate::progress::{OnProgress, advance};
 use crate::statistics::{chi_squared_tail, f_tail};
@@ -162,12 +162,11 @@ const PAIRED: usize = 3;
 
 /// The model with pairs of the rivals that lower BIC most by themselves.
 fn pairs(model: &MeasurementModel, single: &[(&Candidate, Calibration)]) -> Result<Vec<Candidate>, FitError> {
-    let mut bics = Vec::with_capacity(single.len());
-    for (candidate, calibration) in single {
-        bics.push((candidate, bic(calibration.fit(), calibration.data(), traced(calibration)?)));
-    }
+    let with_bic =
+        |(candidate, calibration): &(_, Calibration)| Ok((*candidate, bic(calibration, traced(calibration)?)));
+    let bics: Vec<(&Candidate, f64)> = single.iter().map(with_bic).collect::<Result<_, FitError>>()?;
     let as_stated = bics.iter().find(|(candidate, _)| candidate.name == AS_STATED).map(|(_, bic)| *bic);
-    let lowered = |(candidate, bic): &(&&Candidate, f64)| match candidate.rivals[..] {
+    let lowered = |(candidate, bic): &(&Candidate, f64)| match candidate.rivals[..] {
         [rival] => Some((*bic, rival)).filter(|_| as_stated.is_some_and(|stated| *bic < stated)),
         _ => None,
     };
@@ -201,8 +200,7 @@ fn fits<'c>(
 }
 
 /// Compares the fits.
-fn conclude(fits: &[(&Candidate, Calibration)]) -> Result<ModelSelection, FitError> {
-    let all = fits;
+fn conclude(all: &[(&Candidate, Calibration)]) -> Result<ModelSelection, FitError> {
     let fits = with_further_unknowns(all);
     let is_kept = |rivals: &[Rival]| fits.iter().any(|(candidate, _)| candidate.rivals == rivals);
     let single = all.iter().filter_map(|(candidate, _)| <[Rival; 1]>::try_from(candidate.rivals.as_slice()).ok());
@@ -241,7 +239,7 @@ fn candidate_fitted(candidate: &Candidate, calibration: &Calibration) -> Result<
         converged: fit.termination == Termination::Converged,
         chi_squared: fit.chi_squared,
         degrees_of_freedom: fit.degrees_of_freedom,
-        bic: bic(fit, data, traced),
+        bic: bic(calibration, traced),
         traced,
         hold_out_score: calibration.validity()?.hold_out_score(),
         against: None,
@@ -259,9 +257,10 @@ fn traced(calibration: &Calibration) -> Result<f64, FitError> {
 }
 
 /// `chi^2 + k ln n` for `k` combinations that the fit follows and `n` readings, three per plateau (Schwarz).
-fn bic(fit: &Fit, data: &Data, traced: f64) -> f64 {
+fn bic(calibration: &Calibration, traced: f64) -> f64 {
+    let fit = calibration.fit();
     let followed = fit.observability().rank() as f64 + traced;
-    fit.chi_squared + followed * (3.0 * data.observations().len() as f64).ln()
+    fit.chi_squared + followed * (3.0 * calibration.data().observations().len() as f64).ln()
 }
 
 /// The candidates whose unknowns are a part of those of candidate `n`, and those before it that have the same.

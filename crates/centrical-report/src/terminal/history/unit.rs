@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 
 use centrical_session::{
-    Date, DueDate, LeftOutSession, MICRO_G, ReadingHistory, STANDARD_GRAVITY as G, UnitHistoryReport, UnitParameter,
-    customary, unit_name,
+    Date, DueDate, LeftOutSession, MICRO_G, PastSession, ReadingHistory, STANDARD_GRAVITY as G, UnitHistoryReport,
+    UnitParameter, customary, unit_name,
 };
 
 use crate::number::{counted, two_digits, unsigned_zero, with_uncertainty};
@@ -121,7 +121,7 @@ fn last_calibration(screen: &mut Screen, report: &UnitHistoryReport) {
 /// Calibrations and parameters that are not compared, and calibrations with an objection.
 fn incomplete(screen: &mut Screen, report: &UnitHistoryReport) {
     for LeftOutSession { session, lacks } in report.incomplete.iter().take(NAMES) {
-        let words = format!("{}, {}: it does not determine {}", session.date, short(&session.source), first_of(lacks));
+        let words = format!("{}: it does not determine {}", named(session), first_of(lacks));
         screen.marked(Emphasis::Warning, "INCOMPLETE", &words);
     }
     if report.incomplete.len() > NAMES {
@@ -211,11 +211,9 @@ fn gravities(screen: &mut Screen, report: &UnitHistoryReport) {
         let [first, then] = [one, other].map(|session| session.gravity.map_or_else(String::new, |g| g.to_string()));
         let place = if one.station.is_empty() { "without a station" } else { "at one station" };
         let words = format!(
-            "{}, {} states {first} m/s^2 and {}, {} {then} m/s^2, {place}: a wrong value moves each scale error by as much",
-            one.date,
-            short(&one.source),
-            other.date,
-            short(&other.source)
+            "{} states {first} m/s^2 and {} {then} m/s^2, {place}: a wrong value moves each scale error by as much",
+            named(one),
+            named(other)
         );
         screen.marked(Emphasis::Warning, "GRAVITY", &words);
     }
@@ -225,11 +223,9 @@ fn gravities(screen: &mut Screen, report: &UnitHistoryReport) {
 fn twice(screen: &mut Screen, report: &UnitHistoryReport) {
     for [one, other] in report.twice() {
         let words = format!(
-            "{}, {} and {}, {} have the same values to the last digit, and count as two sessions",
-            one.date,
-            short(&one.source),
-            other.date,
-            short(&other.source)
+            "{} and {} have the same values to the last digit, and count as two sessions",
+            named(one),
+            named(other)
         );
         screen.marked(Emphasis::Warning, "TWICE", &words);
     }
@@ -246,9 +242,13 @@ fn twice(screen: &mut Screen, report: &UnitHistoryReport) {
 
 /// A calibration that is left out, and why.
 pub(super) fn left_out(left_out: &LeftOutSession) -> String {
-    let session = &left_out.session;
-    let lacks = first_of(&left_out.lacks);
-    format!("{}, {}: it does not determine {lacks}, and is not compared", session.date, short(&session.source))
+    let LeftOutSession { session, lacks } = left_out;
+    format!("{}: it does not determine {}, and is not compared", named(session), first_of(lacks))
+}
+
+/// A session by its day and file.
+fn named(session: &PastSession) -> String {
+    format!("{}, {}", session.date, short(&session.source))
 }
 
 /// The file of a session; of its key in a store, 64 digits, the first that a person compares.

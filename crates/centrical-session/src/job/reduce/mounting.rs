@@ -116,8 +116,8 @@ fn reduce_mounting(
     let file = session.record_file(number)?;
     let refused = |source| Error::reduction(file, number, source);
     let (survey, interpolated) = record.survey(cache)?;
-    let first_and_last = || Some([survey.extremes().next()?.t, survey.extremes().last()?.t]);
-    first_and_last().map_or(Ok(()), |times| refuse_years(file, times))?;
+    let mut times = survey.extremes().map(|extremes| extremes.t);
+    refuse_years(file, times.next(), times.last())?;
     let survey = survey.with_resolution(session.type_b.resolution);
     let pulses = if session.speeds.counts_pulses() { session.pulses(number, Extent::Whole)? } else { None };
     let speeds = ShownSpeeds { telemetry: session.telemetry(number, Extent::Whole)?, pulses };
