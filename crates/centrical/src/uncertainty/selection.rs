@@ -203,8 +203,14 @@ fn fits<'c>(
 fn conclude(all: &[(&Candidate, Calibration)]) -> Result<ModelSelection, FitError> {
     let fits = with_further_unknowns(all);
     let is_kept = |rivals: &[Rival]| fits.iter().any(|(candidate, _)| candidate.rivals == rivals);
-    let single = all.iter().filter_map(|(candidate, _)| <[Rival; 1]>::try_from(candidate.rivals.as_slice()).ok());
-    let undetermined = single.filter(|rival| !is_kept(rival)).flatten().collect();
+    // An effect that finds nothing to act on in the experiment has no unknowns: it is not undetermined.
+    let acts = |Candidate { model, rivals, .. }: &Candidate| match rivals[..] {
+        [Rival::Effect(effect)] => !effect.parameters(model.experiment(), model.error_model()).is_empty(),
+        [Rival::Terms(_)] => true,
+        _ => false,
+    };
+    let dropped = all.iter().filter(|(candidate, _)| acts(candidate) && !is_kept(&candidate.rivals));
+    let undetermined = dropped.flat_map(|(candidate, _)| candidate.rivals.iter().copied()).collect();
     let mut fitted: Vec<FittedCandidate> = fits
         .iter()
         .map(|(candidate, calibration)| candidate_fitted(candidate, calibration))

@@ -123,6 +123,9 @@ fn rivals_that_are_not_seen_are_no_candidates() {
     let ranks: Vec<usize> = selection.candidates.iter().filter(|c| !c.rivals.is_empty()).map(|c| c.rank).collect();
     assert!(ranks.len() > 20 && ranks.iter().all(|rank| *rank > as_stated.rank), "{ranks:?}");
     assert!(selection.candidates.iter().all(|c| c.name != "as stated + seat-lateral"));
+    // No latitude is missing, and no rest lies beside the arm: effects of those are not undetermined.
+    let undetermined: Vec<String> = selection.undetermined.iter().map(|rival| rival.name()).collect();
+    assert_eq!(undetermined, ["seat-lateral", "proof-masses"]);
 }
 
 /// One speed is half a per cent off everywhere: no effect describes that, and each takes much of a chi^2 of millions. What is recommended takes more than chance.
