@@ -127,6 +127,15 @@ impl Place {
         let column = before.chars().rev().take_while(|c| *c != '\n').count() + 1;
         Self::Character { line, column }
     }
+
+    /// Name of the column of a table, where one is meant.
+    pub fn column(&self) -> Option<&str> {
+        match self {
+            Self::Line { column, .. } => column.as_deref(),
+            Self::Row { column, .. } | Self::Column(column) => Some(column),
+            Self::Whole | Self::Character { .. } | Self::Key { .. } => None,
+        }
+    }
 }
 
 impl Error {

@@ -67,5 +67,5 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let monte_carlo = progress::counting(template, Some(arguments.runs), arguments.printing.quiet, job)?;
     let text = || monte_carlo_text(&case, &monte_carlo, arguments.coverage);
     arguments.printing.show(text, || case.report(&request, &monte_carlo).to_json())?;
-    Ok(Outcome::Done)
+    Ok(Outcome::acceptable(monte_carlo.is_acceptable(arguments.coverage)))
 }

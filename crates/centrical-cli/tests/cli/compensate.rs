@@ -193,7 +193,7 @@ fn peak_memory(copy: &Copy, rows: u64) -> u64 {
     }
     let output = program.wait_with_output().unwrap();
     assert!(output.status.success(), "{rows} rows");
-    assert!(text(&output).contains(&format!("{rows} readings compensated")), "{}", text(&output));
+    assert!(text(&output).contains(&format!("{rows} readings in m/s^2 compensated")), "{}", text(&output));
     assert!(peak > 0, "{rows} rows: the program ended unseen");
     peak
 }

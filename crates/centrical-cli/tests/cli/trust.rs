@@ -60,6 +60,22 @@ fn montecarlo_repeats_itself() {
     assert_eq!(one, text(&with("3")));
 }
 
+/// Uncertainties that do not hold are no success: linear fits alone of a unit of typical errors, and none of the exact ones.
+#[test]
+fn montecarlo_refuses_uncertainties_that_are_too_small() {
+    let folder = example();
+    let with =
+        |more: &[&str]| run(&[&["montecarlo", folder.to_str().unwrap(), "--runs", "200", "--typical"], more].concat());
+    let refused = with(&["--linear"]);
+    assert_eq!(refused.status.code(), Some(1));
+    let text = String::from_utf8(refused.stdout).unwrap();
+    assert!(text.starts_with("NOT ACCEPTABLE  uncertainties are stated too small, at worst by a factor of "), "{text}");
+    assert_eq!(with(&[]).status.code(), Some(0));
+    let document: serde_json::Value = serde_json::from_slice(&with(&["--linear", "--json"]).stdout).unwrap();
+    assert_eq!(document["acceptable"], false);
+    assert!(document["understated"].as_array().unwrap().iter().any(|name| name == "G1_11"), "{document}");
+}
+
 /// A preset plan is drawn from as well.
 #[test]
 fn montecarlo_draws_from_a_preset_plan() {

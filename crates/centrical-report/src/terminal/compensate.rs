@@ -38,8 +38,9 @@ pub fn compensation_text(compensated: &CompensatedRecord, certificate: &Certific
         screen.marked(Emphasis::Warning, "WARNING", &words);
     }
     let words = format!(
-        "{} compensated, range {} on each axis; the inverse is unique there, and could be asked for {farthest}",
+        "{} in {} compensated, range {} on each axis; the inverse is unique there, and could be asked for {farthest}",
         counted(compensated.readings - compensated.outside.count, "reading"),
+        compensated.unit,
         g(range)
     );
     screen.say(0, &words);

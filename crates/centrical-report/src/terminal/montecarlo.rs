@@ -1,12 +1,12 @@
 //! Monte Carlo runs as text for the terminal.
 
 use centrical::Parameters;
-use centrical::uncertainty::{MonteCarlo, WeightedSquare};
+use centrical::uncertainty::{MonteCarlo, ParameterStatistics, WeightedSquare};
 use centrical_session::{MonteCarloCase, customary};
 
-use super::phrases::legend;
+use super::phrases::{legend, short_list};
 use super::prediction::LEANING;
-use super::screen::Screen;
+use super::screen::{Emphasis, Screen};
 use super::table::{Align, Cell, Table};
 use crate::number::{counted, two_digits, unsigned_zero};
 
@@ -14,7 +14,7 @@ use crate::number::{counted, two_digits, unsigned_zero};
 /// stated; `coverage` is the probability that the intervals are to cover.
 pub fn monte_carlo_text(case: &MonteCarloCase, monte_carlo: &MonteCarlo, coverage: f64) -> Screen {
     let parameters = case.model.parameters();
-    let mut screen = Screen::default();
+    let mut screen = verdict(parameters, monte_carlo, coverage);
     if let Some(unit) = drawn_unit(parameters, &case.truth) {
         screen.say(0, unit);
     }
@@ -41,6 +41,32 @@ pub fn monte_carlo_text(case: &MonteCarloCase, monte_carlo: &MonteCarlo, coverag
         );
         screen.say(2, &text);
     }
+    screen
+}
+
+/// Why the stated uncertainties do not hold: empty where they do.
+fn verdict(parameters: &Parameters, monte_carlo: &MonteCarlo, coverage: f64) -> Screen {
+    /// Parameters that are named.
+    const NAMED: usize = 9;
+    let mut screen = Screen::default();
+    if monte_carlo.is_acceptable(coverage) {
+        return screen;
+    }
+    let ratio = |j: usize| monte_carlo.parameters[j].as_ref().map_or(1.0, ParameterStatistics::ratio);
+    let mut understated = monte_carlo.understated();
+    understated.sort_by(|&a, &b| ratio(b).total_cmp(&ratio(a)));
+    let names: Vec<String> = understated.iter().map(|&j| parameters[j].name.clone()).collect();
+    let words = match understated.first() {
+        Some(&worst) => format!(
+            "uncertainties are stated too small, at worst by a factor of {:.2}: {}",
+            ratio(worst),
+            short_list(&names, NAMED, ", ")
+        ),
+        None => format!("{} did not converge", counted(monte_carlo.failures, "calibration")),
+    };
+    screen.marked(Emphasis::NotAcceptable, "NOT ACCEPTABLE", &words);
+    screen.close(Emphasis::NotAcceptable, "NOT ACCEPTABLE", "for the reason in the first lines");
+    screen.gap();
     screen
 }
 

@@ -25,6 +25,8 @@ pub struct CompensationReport {
     pub acceptable: bool,
     /// The objections to it.
     pub objections: Vec<ObjectionName>,
+    /// Unit in which the readings were taken.
+    pub unit: String,
     /// Decimals of the specific forces in m/s^2; null where they are written to the last bit.
     pub decimals: Option<u32>,
     /// Readings.

@@ -46,11 +46,13 @@ pub struct CandidateSummary {
     pub chi_squared: f64,
     /// Its degrees of freedom.
     pub degrees_of_freedom: usize,
-    /// `chi^2 + rank ln n` of `n` readings.
+    /// Combinations beyond the rank that second-order traces determine, in part or in whole.
+    pub traced: f64,
+    /// `chi^2 + (rank + traced) ln n` of `n` readings.
     pub bic: f64,
     /// Mean score per reading of the prediction of each mounting from the others: the lower the better.
     pub hold_out_score: Option<f64>,
-    /// F test against the largest model nested in this one; null without a nested model.
+    /// F test against the largest model nested in this one; null without a nested model or without degrees of freedom.
     pub nested_test: Option<NestedTestSummary>,
 }
 
@@ -108,6 +110,7 @@ impl CandidateSummary {
             converged: candidate.converged,
             chi_squared: candidate.chi_squared,
             degrees_of_freedom: candidate.degrees_of_freedom,
+            traced: candidate.traced,
             bic: candidate.bic,
             hold_out_score: json::finite(candidate.hold_out_score),
             nested_test: candidate.against.map(|test| NestedTestSummary {

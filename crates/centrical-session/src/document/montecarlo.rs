@@ -36,6 +36,10 @@ pub struct MonteCarloReport {
     pub weighted_square: SquareSummary,
     /// chi^2 of the fits.
     pub chi_squared: SquareSummary,
+    /// Names of the unknowns whose stated uncertainty is too small ([`MonteCarlo::understated`]).
+    pub understated: Vec<String>,
+    /// Whether the stated uncertainties hold ([`MonteCarlo::is_acceptable`]).
+    pub acceptable: bool,
 }
 
 /// The fit that is repeated.
@@ -119,6 +123,8 @@ impl MonteCarloReport {
             parameters: (0..parameters.len()).map(parameter).collect(),
             weighted_square: SquareSummary::of(&monte_carlo.weighted_square, runs),
             chi_squared: SquareSummary::of(&monte_carlo.chi_squared, runs),
+            understated: monte_carlo.understated().into_iter().map(|j| parameters[j].name.clone()).collect(),
+            acceptable: monte_carlo.is_acceptable(settings.coverage),
         }
     }
 }

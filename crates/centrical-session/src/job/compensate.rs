@@ -19,8 +19,10 @@ use crate::record::RecordWriter;
 use crate::record::{Columns, RecordReader, stretch};
 
 /// What became of a record.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct CompensatedRecord {
+    /// Unit in which the readings were taken.
+    pub unit: String,
     /// Readings.
     pub readings: u64,
     /// Of these, readings that no specific force within the range gives; they are written as NaN.
@@ -161,7 +163,8 @@ fn on_this_thread(
     let mut record = RecordReader::open(input, columns)?;
     record.keep_stamps();
     let mut writer = RecordWriter::create_rounded(output, compensation.certificate().range)?;
-    let mut sum = CompensatedRecord { decimals: writer.decimals(), ..CompensatedRecord::default() };
+    let unit = columns.f[0].unit.clone();
+    let mut sum = CompensatedRecord { unit, decimals: writer.decimals(), ..CompensatedRecord::default() };
     while let Some(batch) = record.next_batch()? {
         let compensated = batch.par_iter_mut().map(|rows| compensate_rows(compensation, calibrated, input, rows));
         for rows in compensated.collect::<Vec<_>>() {
@@ -203,7 +206,7 @@ fn compensate_rows(
     let first = |k: usize| FirstReading { t: t[k], reading: [0, 1, 2].map(|axis: usize| readings[axis][k]) };
     let [outside, beyond] =
         [outside, beyond].map(|found| ReadingsBeyond { count: found.count as u64, first: found.first.map(first) });
-    Ok(CompensatedRecord { readings: t.len() as u64, outside, beyond, decimals: None })
+    Ok(CompensatedRecord { readings: t.len() as u64, outside, beyond, ..CompensatedRecord::default() })
 }
 
 impl CompensatedRecord {
@@ -225,6 +228,7 @@ impl CompensatedRecord {
             out,
             acceptable: objections.is_empty(),
             objections: objections.iter().map(Into::into).collect(),
+            unit: self.unit.clone(),
             decimals: self.decimals,
             readings: self.readings,
             range: certificate.range,

@@ -163,12 +163,14 @@ impl MissingReadings {
         }
     }
 
-    /// An error about a reading that is missing says how such rows are left out.
-    fn explain(self, error: centrical_table::Error) -> centrical_table::Error {
+    /// An error about a reading that is missing says how such rows are left out; a row needs its `time`.
+    fn explain(self, error: centrical_table::Error, time: &str) -> centrical_table::Error {
         use centrical_table::Error::Content;
         match error {
             Content { file, place, found, expected }
-                if self == Self::Refused && (found == "no value" || is_missing(found.trim_matches('"'))) =>
+                if self == Self::Refused
+                    && (found == "no value" || is_missing(found.trim_matches('"')))
+                    && place.column() != Some(time) =>
             {
                 let expected = format!("{expected}, or missing_readings = \"left out\" under [columns]");
                 Content { file, place, found, expected }
@@ -192,6 +194,8 @@ pub(crate) struct CheckedTable {
     pub file: PathBuf,
     pub reader: TableReader,
     pub missing: Option<MissingReadings>,
+    /// Name of the first column.
+    time: String,
     units: StatedUnits,
 }
 
@@ -206,7 +210,8 @@ impl CheckedTable {
     ) -> Result<Self, Error> {
         let file = source.name().to_owned();
         let reader = TableReader::new(source, extent, fields, form.expected, form.lines)?;
-        Ok(Self { file, reader, missing: form.missing, units })
+        let time = fields.first().map_or_else(String::new, |field| field.name.to_string());
+        Ok(Self { file, reader, missing: form.missing, time, units })
     }
 
     /// Opens a table of columns, the first of them time, the others readings.
@@ -221,7 +226,7 @@ impl CheckedTable {
     /// As of [`TableReader::next_batch`]; if the file names other units than those that are stated.
     pub fn next_batch(&mut self) -> Result<Option<&mut [Rows]>, Error> {
         let explain = |error| match self.missing {
-            Some(missing) => missing.explain(error),
+            Some(missing) => missing.explain(error, &self.time),
             None => error,
         };
         if self.reader.next_batch().map_err(explain)?.is_none() {

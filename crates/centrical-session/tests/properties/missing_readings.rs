@@ -72,5 +72,10 @@ fn rows_that_lack_a_reading_are_as_rows_that_are_lost() {
             refused.contains("expected a number in m/s^2, or missing_readings = \"left out\" under [columns]"),
             "{refused}"
         );
-    }
+    } // A row needs its time.
+    let one = fs::read_to_string(folder.path().join("one.csv")).unwrap();
+    let time = one.lines().nth(5).unwrap().split(',').next().unwrap();
+    write("one.csv", one.replacen(&format!("\n{time},"), "\n,", 1));
+    let refused = session(folder.path(), "\"one.csv\"", "").record(0).unwrap_err().to_string();
+    assert!(refused.contains("line 6, t") && !refused.contains("missing_readings"), "{refused}");
 }

@@ -140,7 +140,12 @@ fn arrays(message: &Message, batch: RecordBatchRef, columns: &[ArrowColumn]) -> 
         if node.null_count() != 0 {
             let place = Place::Column(column.name.clone());
             let found = format!("{} values missing", node.null_count());
-            return Err(Error::content(message.source.name(), place, found, "a value in every row"));
+            return Err(Error::content(
+                message.source.name(),
+                place,
+                found,
+                "a value in every row, NaN where a reading is missing",
+            ));
         }
         let count = u64::try_from(rows).ok().filter(|_| node.length() == rows);
         let bytes = message.bytes_of(buffer.offset(), buffer.length(), packing)?;

@@ -10,12 +10,13 @@ use rayon::prelude::*;
 use super::budget::Budget;
 use super::comparison::weighted_square;
 use super::coverage::Degrees;
+use super::verdict::Level;
 use crate::fit::batch::FitMethod;
 use crate::fit::{Calibration, Data, Fit, Structure, Termination};
 use crate::model::plateau::noise_factor;
 use crate::model::{FitError, MeasurementModel, Observation, SetPoint};
 use crate::progress::{OnProgress, advance};
-use crate::statistics::{Random, chi_squared_tail};
+use crate::statistics::{Random, chi_squared_tail, family_wise};
 
 /// What to draw, and how often.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -74,6 +75,9 @@ pub struct WeightedSquare {
     pub sorted: Vec<f64>,
 }
 
+/// Root mean square error over stated uncertainty up to which the latter holds: what second-order terms add to a sound calibration is less.
+const UNDERSTATED: f64 = 1.1;
+
 /// Runs handed to the threads at a time: enough to keep any number busy, few enough for a smooth progress bar.
 const BATCH: usize = 256;
 
@@ -105,6 +109,31 @@ impl MonteCarlo {
             advance(progress, count)?;
         }
         Ok(tally.into_monte_carlo(&laboratory))
+    }
+
+    /// Indices of the parameters whose stated uncertainty is too small: their root mean square error exceeds it by more than a
+    /// tenth, and by more than chance allows (family-wise, at the level of an objection).
+    pub fn understated(&self) -> Vec<usize> {
+        let statistics = self.parameters.iter().enumerate();
+        let ratios: Vec<(usize, f64)> = statistics.filter_map(|(j, s)| Some((j, s.as_ref()?.ratio()))).collect();
+        let by_chance = |(_, ratio): &(usize, f64)| chi_squared_tail(self.runs as f64 * ratio.powi(2), self.runs);
+        let chances = family_wise(&ratios.iter().map(by_chance).collect::<Vec<_>>());
+        let judged = ratios.into_iter().zip(chances);
+        let is_understated = |ratio: f64, chance: f64| ratio > UNDERSTATED && Level::Objection.is_passed_by(chance);
+        judged.filter(|((_, ratio), chance)| is_understated(*ratio, *chance)).map(|((j, _), _)| j).collect()
+    }
+
+    /// Whether the stated uncertainties hold: too few fits fail to alter the coverage, and no uncertainty is too small.
+    pub fn is_acceptable(&self, coverage: f64) -> bool {
+        let all = (self.runs + self.failures) as f64;
+        self.runs > 0 && self.failures as f64 <= (1.0 - coverage) * all && self.understated().is_empty()
+    }
+}
+
+impl ParameterStatistics {
+    /// Root mean square error over the stated uncertainty.
+    pub fn ratio(&self) -> f64 {
+        self.standard_deviation.hypot(self.bias) / self.stated
     }
 }
 

@@ -288,7 +288,7 @@ fn with_further_unknowns<'f, 'c>(
     (0..fits.len()).filter(is_kept).map(|n| &fits[n]).collect()
 }
 
-/// Test of candidate `n` against the largest one nested in it that determines less.
+/// Test of candidate `n` against the largest one nested in it that determines less; `None` where no degree of freedom remains for it.
 fn nested_test(candidates: &[&Candidate], fitted: &[FittedCandidate], n: usize) -> Option<NestedTest> {
     let determines_less = |m: &usize| fitted[*m].rank < fitted[n].rank;
     let nested = nested_in(candidates, n).into_iter().filter(determines_less).max_by_key(|&m| fitted[m].rank)?;
@@ -296,7 +296,7 @@ fn nested_test(candidates: &[&Candidate], fitted: &[FittedCandidate], n: usize) 
     let further = rich.rank - simple.rank;
     // Counted by the rank alone, what traces of lost combinations explain by chance would pass for a gain.
     let followed = further as f64 + (rich.traced - simple.traced).max(0.0);
-    let left = rich.degrees_of_freedom as f64 - rich.traced;
+    let left = Some(rich.degrees_of_freedom as f64 - rich.traced).filter(|left| *left > 0.0)?;
     let f = ((simple.chi_squared - rich.chi_squared) / followed) / (rich.chi_squared / left);
     Some(NestedTest { nested, f, further, probability: f_tail(f, followed, left) })
 }

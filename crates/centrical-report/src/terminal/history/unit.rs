@@ -207,15 +207,20 @@ fn sameness(screen: &mut Screen, report: &UnitHistoryReport) {
 
 /// Sessions of one place that state different gravities.
 fn gravities(screen: &mut Screen, report: &UnitHistoryReport) {
-    for [one, other] in report.gravities() {
+    let pairs = report.gravities();
+    for [one, other] in pairs.iter().take(NAMES) {
         let [first, then] = [one, other].map(|session| session.gravity.map_or_else(String::new, |g| g.to_string()));
-        let place = if one.station.is_empty() { "without a station" } else { "at one station" };
+        let place =
+            if one.station.is_empty() { "without a station to tell two places apart" } else { "at one station" };
         let words = format!(
-            "{} states {first} m/s^2 and {} {then} m/s^2, {place}: a wrong value moves each scale error by as much",
+            "{} states {first} m/s^2 and {} {then} m/s^2, {place}: a wrong value moves each scale error from rests by as much",
             named(one),
             named(other)
         );
         screen.marked(Emphasis::Warning, "GRAVITY", &words);
+    }
+    if pairs.len() > NAMES {
+        screen.marked(Emphasis::Warning, "GRAVITY", &format!("and {} more changes", pairs.len() - NAMES));
     }
 }
 

@@ -235,13 +235,16 @@ impl UnitHistoryReport {
         self.sameness.as_ref().is_some_and(|test| 1.0 - test.probability < TOO_WELL)
     }
 
-    /// Pairs of sessions of one station, one after the other, that state different gravities. Sessions that name no station count as of one.
+    /// Pairs of sessions of one station, one after the other, that state gravities farther apart than tides and rounding. Sessions that
+    /// name no station count as of one.
     pub fn gravities(&self) -> Vec<[&PastSession; 2]> {
         let mut last: BTreeMap<&str, &PastSession> = BTreeMap::new();
         let mut pairs = Vec::new();
         for session in self.sessions.iter().filter(|session| session.gravity.is_some()) {
             let before = last.insert(&session.station, session);
-            pairs.extend(before.filter(|before| before.gravity != session.gravity).map(|before| [before, session]));
+            pairs.extend(
+                before.filter(|before| are_apart(before.gravity, session.gravity)).map(|before| [before, session]),
+            );
         }
         pairs
     }
@@ -293,4 +296,9 @@ pub(crate) fn shown_readings(readings: &[ReadingHistory]) -> Vec<usize> {
         shown.extend(at_rest.into_iter().chain(other));
     }
     shown
+}
+
+/// Whether two gravities differ by more than 1e-6 of their size: tides alter one place's by 3e-7.
+fn are_apart(one: Option<f64>, other: Option<f64>) -> bool {
+    one.zip(other).is_some_and(|(one, other)| (one - other).abs() > 1e-6 * other.abs())
 }
