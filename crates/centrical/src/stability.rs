@@ -18,6 +18,7 @@ mod degrees_of_freedom;
 mod deviation;
 mod error;
 mod estimator;
+mod faults;
 mod grid;
 mod log_fit;
 mod log_moments;

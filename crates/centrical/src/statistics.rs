@@ -1,10 +1,14 @@
 //! Laws of chance, robust statistics, and random numbers.
 
+mod doubtful;
 mod laws;
 mod random;
 mod robust;
 mod rounding;
 
+pub(crate) use doubtful::{
+    Side, is_tone, longest_run, may_be_longer, may_be_piled_up, piled_up, standing, stuck_on_any_axis, widened,
+};
 pub(crate) use laws::{chi_squared_quantiles, f_tail, holm, sidak, t_tail};
 pub use laws::{chi_squared_tail, family_wise};
 pub(crate) use random::Random;

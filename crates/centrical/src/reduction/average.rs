@@ -1,7 +1,7 @@
 //! Second pass: the mean of each plateau from the samples of its window, a part at a time.
 
 mod cells;
-mod doubtful;
+
 mod samples;
 mod strips;
 
@@ -14,8 +14,8 @@ use super::record::RecordSlice;
 use super::survey::Blocks;
 use super::triangle::Triangle;
 use crate::model::Position;
+use crate::statistics::{may_be_piled_up, piled_up};
 pub(super) use cells::{Cells, Markov, Weights};
-use doubtful::{may_be_piled_up, piled_up};
 pub(super) use samples::CELLS;
 use samples::Samples;
 use strips::{Fitted, Strips};

@@ -3,6 +3,7 @@
 use super::deviation::Deviation;
 use super::error::NoiseError;
 use super::estimator::Estimator;
+use super::faults::{refuse_faults, refuse_held};
 use super::grid::Grid;
 use super::phase::{BridgedGaps, Phase};
 use super::spectrum::Spectrum;
@@ -51,6 +52,7 @@ impl Analysis {
     ) -> Result<Analysis, NoiseError> {
         advance(progress, ())?;
         let mut grid = Grid::of(t, y, progress)?;
+        let held = refuse_held(&grid.readings);
         let spikes = leave_out_spikes(&mut grid.readings, progress)?;
         let phase = Phase::integrate(&grid.readings, grid.interval, progress)?;
         let seen = || grid.readings.iter().filter(|y| y.is_finite());
@@ -70,7 +72,9 @@ impl Analysis {
                 segment(grid.readings.len()),
                 progress,
             ))?,
-            terms: unless_stopped(NoiseTerms::of(&phase, progress))?,
+            terms: unless_stopped(
+                held.and_then(|()| refuse_faults(&grid.readings)).and_then(|()| NoiseTerms::of(&phase, progress)),
+            )?,
         })
     }
 
@@ -92,8 +96,8 @@ fn unless_stopped<T>(outcome: Result<T, NoiseError>) -> Result<Result<T, NoiseEr
 ///
 /// Estimators whose work is the product of record and averaging time stop where it would take more than some seconds.
 fn family(phase: &Phase, estimator: Estimator, progress: OnProgress<()>) -> Result<Vec<Deviation>, NoiseError> {
-    /// Operations that take some seconds.
-    const WORK: usize = 1 << 32;
+    /// Operations that take some seconds, each of some 20 ns.
+    const WORK: usize = 1 << 26;
     let is_product = matches!(estimator, Estimator::ModifiedTotal | Estimator::TimeTotal | Estimator::HadamardTotal);
     let longest = if is_product { WORK / phase.points().len() } else { usize::MAX };
     let factors: Vec<usize> = phase.octaves(2).into_iter().filter(|m| *m <= longest).collect();

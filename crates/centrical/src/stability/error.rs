@@ -68,6 +68,65 @@ pub enum NoiseError {
     /// A variance of the record vanishes.
     #[error("the record is constant or repeats exactly: it holds no noise to analyse")]
     Constant,
+    /// Stamps too coarse for the rate.
+    #[error(
+        "found {found} of {samples} readings less than half a step after one that they differ from, expected a time of its own for each \
+         reading: state the rate in place of a column of time"
+    )]
+    CoarseStamps {
+        /// Such readings.
+        found: usize,
+        /// Samples in all.
+        samples: usize,
+    },
+    /// The sampling interval changes.
+    #[error(
+        "found readings every {found:.6} s around {place:.1} s, and every {interval:.6} s on average, expected one rate: choose a stretch"
+    )]
+    ChangingRate {
+        /// The interval of a part of the record [s].
+        found: f64,
+        /// The middle of the part [s].
+        place: f64,
+        /// The mean interval [s].
+        interval: f64,
+    },
+    /// Readings that repeat where noise would not.
+    #[error(
+        "found {repeated} of {readings} readings equal to the one before, {longest} in a row, expected noise in each: something holds them"
+    )]
+    Held {
+        /// Readings equal to the one before.
+        repeated: usize,
+        /// Readings in all.
+        readings: usize,
+        /// Readings in the longest run.
+        longest: usize,
+    },
+    /// Readings pile up at an end of their range.
+    #[error("found {found} readings at {value:?}, an end of their range, expected noise that nothing cuts off")]
+    Saturated {
+        /// Such readings.
+        found: usize,
+        /// The value.
+        value: f64,
+    },
+    /// Too many short gaps: means of fewer readings have larger deviations.
+    #[error(
+        "found {missing} of {readings} readings missing in short gaps, expected a fiftieth at most: means of fewer readings deviate more"
+    )]
+    ScatteredGaps {
+        /// Readings missing in short gaps.
+        missing: usize,
+        /// Readings in all.
+        readings: usize,
+    },
+    /// No stretch without a gap is long enough.
+    #[error("found no {expected} readings in a row without many gaps")]
+    Interrupted {
+        /// Readings in a row that are needed.
+        expected: usize,
+    },
     /// BridgedGaps leave too little of the record in one piece.
     #[error("found {missing} of {readings} readings missing, expected stretches of which a tenth is missing at most")]
     TooManyGaps {

@@ -25,12 +25,17 @@ impl Grid {
     ///
     /// # Errors
     /// [`NoiseError`] if `t` and `y` differ in length, hold fewer than 3 samples, `t` is not finite or runs backwards,
-    /// or fewer than half of the spanned grid points have a sample; [`NoiseError::Stopped`].
+    /// or fewer than half of the spanned grid points have a sample; if more than a hundredth of the samples are repeated but differ
+    /// ([`NoiseError::CoarseStamps`]); if the interval changes by more than a hundredth ([`NoiseError::ChangingRate`]);
+    /// [`NoiseError::Stopped`].
     pub fn of(t: &[f64], y: &[f64], progress: OnProgress<()>) -> Result<Grid, NoiseError> {
         check(t, y)?;
         let mut steps: Vec<f64> = t.windows(2).map(|pair| pair[1] - pair[0]).filter(|&step| step > 0.0).collect();
         let step = watched_median(&mut steps, progress)?;
-        let (places, repeated) = places(t, step, progress)?;
+        let Places { kept: places, repeated, differing } = Places::of(t, y, step, progress)?;
+        if 100 * differing > t.len().max(1000) {
+            return Err(NoiseError::CoarseStamps { found: differing, samples: t.len() });
+        }
         let span = places.last().map_or(0, |&(place, _)| place + 1);
         if span > 2 * places.len() {
             return Err(NoiseError::MostlyMissing { found: places.len(), span });
@@ -40,6 +45,7 @@ impl Grid {
             readings[place] = y[sample];
         }
         let interval = places.last().map_or(step, |&(place, sample)| (t[sample] - t[0]) / place as f64);
+        check_rate(t, &places, interval)?;
         Ok(Grid { interval, readings, repeated })
     }
 }
@@ -61,25 +67,51 @@ fn check(t: &[f64], y: &[f64]) -> Result<(), NoiseError> {
     }
 }
 
-/// `(grid point, sample)` of every sample kept, and the number of repeated samples.
-fn places(t: &[f64], interval: f64, progress: OnProgress<()>) -> Result<(Vec<(usize, usize)>, usize), Stopped> {
-    let mut places = vec![(0, 0)];
-    let (mut place, mut last, mut repeated) = (0, t[0], 0);
-    for (sample, &time) in t.iter().enumerate().skip(1) {
-        if sample % PIECE == 0 {
-            advance(progress, ())?;
+/// Refuses an interval that changes: in parts of the record it is off its mean by a hundredth, and by more than two stamps of the part.
+fn check_rate(t: &[f64], places: &[(usize, usize)], interval: f64) -> Result<(), NoiseError> {
+    const PARTS: usize = 16;
+    for part in places.chunks(places.len().div_ceil(PARTS).max(2)) {
+        let [(from, first), .., (to, last)] = *part else { continue };
+        let (span, regular) = (t[last] - t[first], (to - from) as f64 * interval);
+        if (span - regular).abs() > (0.01 * regular).max(2.0 * interval) {
+            let found = span / (to - from) as f64;
+            return Err(NoiseError::ChangingRate { found, place: 0.5 * (t[first] + t[last]), interval });
         }
-        let steps = ((time - last) / interval).round();
-        if steps < 1.0 {
-            repeated += 1;
-            continue;
-        }
-        // A span beyond memory is refused by the caller.
-        place += whole(steps.min(1e15));
-        last = time;
-        places.push((place, sample));
     }
-    Ok((places, repeated))
+    Ok(())
+}
+
+/// Where samples fall on the grid.
+struct Places {
+    /// `(grid point, sample)` of every sample kept.
+    kept: Vec<(usize, usize)>,
+    /// Repeated samples.
+    repeated: usize,
+    /// Repeated samples whose reading differs from the one kept.
+    differing: usize,
+}
+
+impl Places {
+    fn of(t: &[f64], y: &[f64], interval: f64, progress: OnProgress<()>) -> Result<Self, Stopped> {
+        let mut places = vec![(0, 0)];
+        let (mut place, mut last, mut repeated, mut differing) = (0, 0, 0, 0);
+        for (sample, &time) in t.iter().enumerate().skip(1) {
+            if sample % PIECE == 0 {
+                advance(progress, ())?;
+            }
+            let steps = ((time - t[last]) / interval).round();
+            if steps < 1.0 {
+                repeated += 1;
+                differing += usize::from(y[sample].is_finite() && y[last].is_finite() && y[sample] != y[last]);
+                continue;
+            }
+            // A span beyond memory is refused by the caller.
+            place += whole(steps.min(1e15));
+            last = sample;
+            places.push((place, sample));
+        }
+        Ok(Self { kept: places, repeated, differing })
+    }
 }
 
 #[cfg(test)]
@@ -105,6 +137,23 @@ mod tests {
         let grid = Grid::of(&t, &vec![0.5; t.len()], &unwatched).unwrap();
         assert_eq!(grid.readings.len(), 30_000);
         assert!((grid.interval * 3000.0 - 1.0).abs() < 1e-5);
+    }
+
+    /// 3 kHz with stamps in milliseconds, and a rate that drops: either would scale the noise by the wrong interval.
+    #[test]
+    fn wrong_intervals_are_refused() {
+        let readings: Vec<f64> = (0..30_000).map(|i| f64::from(i * 7919 % 131)).collect();
+        let coarse: Vec<f64> = (0..30_000).map(|i| (f64::from(i) / 3000.0 * 1e3).floor() / 1e3).collect();
+        assert!(matches!(Grid::of(&coarse, &readings, &unwatched), Err(NoiseError::CoarseStamps { .. })));
+        let same = vec![1.0; 30_000];
+        assert!(!matches!(Grid::of(&coarse, &same, &unwatched), Err(NoiseError::CoarseStamps { .. })));
+        let slower = |i: i32| f64::from(i) * 0.01 + f64::from((i - 15_000).max(0)) * 0.004;
+        let changing: Vec<f64> = (0..30_000).map(slower).collect();
+        assert!(matches!(Grid::of(&changing, &readings, &unwatched), Err(NoiseError::ChangingRate { .. })));
+        // A clock that is fast by a thousandth for half of the record is none.
+        let drifting: Vec<f64> =
+            (0..30_000).map(|i| f64::from(i) * 0.01 + f64::from((i - 15_000).max(0)) * 1e-5).collect();
+        assert!(Grid::of(&drifting, &readings, &unwatched).is_ok());
     }
 
     #[test]

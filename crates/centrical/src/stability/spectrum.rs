@@ -138,10 +138,7 @@ impl Spectrum {
             }
         }
         if segments == 0 {
-            return Err(NoiseError::TooShort {
-                found: readings.iter().filter(|y| y.is_finite()).count(),
-                expected: length,
-            });
+            return Err(NoiseError::Interrupted { expected: length });
         }
         let count = segments as f64;
         for (k, value) in density.iter_mut().enumerate() {

@@ -1,14 +1,14 @@
 //! Spikes: readings that differ from their neighbours by more than noise.
 
 use crate::progress::{OnProgress, Stopped, advance};
-use crate::statistics::{PIECE, cut, spread, watched_median};
+use crate::statistics::{PIECE, Side, cut, spread, watched_median, widened};
 
 /// Marks the spikes among evenly spaced readings as missing (NaN) and returns their number.
 ///
 /// A reading is compared with the median of the two on either side of it, which one more spike among them does not
 /// move. The limit is what fewer than one in twenty records of good readings exceed anywhere, `sqrt(2 ln 20 n)` robust
 /// standard deviations, which allow for the last digit. Noise slower than a few samples does not enter the comparison, and
-/// so is not cut. `progress` is asked again and again.
+/// so is not cut. A tail that falls off as an exponential does is noise, and stays ([`widened`]). `progress` is asked again and again.
 ///
 /// # Errors
 /// [`Stopped`] when the caller stops it; no reading is marked then.
@@ -21,6 +21,11 @@ pub fn leave_out_spikes(readings: &mut [f64], progress: OnProgress<()>) -> Resul
     }
     let mut sizes: Vec<f64> = residuals.iter().filter(|r| r.is_finite()).map(|r| r.abs()).collect();
     let limit = cut(sizes.len()) * spread(watched_median(&mut sizes, progress)?, last_digit(readings));
+    let mut sides = [Side::default(); 2];
+    for residual in residuals.iter().filter(|r| r.is_finite()) {
+        sides[usize::from(*residual > 0.0)].count(residual.abs() / limit);
+    }
+    let limit = limit * sides.into_iter().filter_map(widened).fold(1.0, f64::max);
     let mut spikes = 0;
     for (reading, residual) in readings.iter_mut().zip(&residuals) {
         if residual.abs() > limit {
@@ -32,7 +37,7 @@ pub fn leave_out_spikes(readings: &mut [f64], progress: OnProgress<()>) -> Resul
 }
 
 /// Last digit of the readings: the smallest step between neighbours, beyond the rounding of `f64` itself.
-fn last_digit(readings: &[f64]) -> f64 {
+pub(super) fn last_digit(readings: &[f64]) -> f64 {
     let largest = readings.iter().filter(|y| y.is_finite()).fold(0.0, |largest: f64, y| largest.max(y.abs()));
     let steps = readings.windows(2).map(|pair| (pair[1] - pair[0]).abs()).filter(|step| *step > 1e-12 * largest);
     steps.fold(f64::INFINITY, f64::min)
@@ -86,6 +91,16 @@ mod tests {
                 }
             }
         }
+    }
+
+    /// Readings of a squared or an exponential law keep their tails, beside spikes.
+    #[test]
+    fn a_tail_is_no_spike() {
+        let mut random = Random::stream(7, 0);
+        let mut readings: Vec<f64> = (0..100_000).map(|_| random.normal().hypot(random.normal()).powi(2)).collect();
+        assert_eq!(leave_out_spikes(&mut readings, &unwatched), Ok(0));
+        readings[500] += 1e3;
+        assert_eq!(leave_out_spikes(&mut readings, &unwatched), Ok(1));
     }
 
     #[test]

@@ -147,7 +147,7 @@ impl NoiseTerms {
     /// again and again.
     ///
     /// # Errors
-    /// [`NoiseError::TooShort`] below 64 readings, [`NoiseError::TooManyGaps`] if gaps leave variances at fewer than four
+    /// [`NoiseError::TooShort`] below 512 readings, [`NoiseError::TooManyGaps`] if gaps leave variances at fewer than four
     /// averaging times, [`NoiseError::Constant`] if a variance vanishes, [`NoiseError::Indescribable`] if no sum of
     /// the terms comes near them; [`NoiseError::Stopped`].
     pub fn of(phase: &Phase, progress: OnProgress<()>) -> Result<NoiseTerms, NoiseError> {
@@ -187,7 +187,8 @@ impl NoiseTerms {
 /// The Hadamard variances of the record, in units of the first of them and of tau0, and those units of the squared
 /// Q, N, B, K: `s^2 (tau0^2, tau0, 1, 1 / tau0)`.
 fn prepare(phase: &Phase, progress: OnProgress<()>) -> Result<(LogFit, [f64; STOCHASTIC]), NoiseError> {
-    const SHORTEST: usize = 64;
+    /// With fewer the white noise alone is said not to be seen in one record of four.
+    const SHORTEST: usize = 512;
     /// Intervals the longest tau leaves: fewer and the third differences have hardly two degrees of freedom.
     const INTERVALS: usize = 5;
     let readings = phase.points().len() - 1;

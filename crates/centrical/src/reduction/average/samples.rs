@@ -6,7 +6,6 @@ use std::ops::Range;
 
 use nalgebra::Vector3;
 
-use super::doubtful::{Side, standing};
 use crate::reduction::error::ReductionError;
 use crate::reduction::locate::{Shape, Window};
 use crate::reduction::plateau::LeftOut;
@@ -15,6 +14,7 @@ use crate::reduction::simd::lanes::subtract_all;
 use crate::reduction::survey::Blocks;
 use crate::reduction::triangle::Triangle;
 use crate::statistics::{MAD, cut, median, whole};
+use crate::statistics::{Side, standing};
 
 /// Equal intervals of a window, for the slow part of the noise.
 pub(in crate::reduction) const CELLS: usize = 128;

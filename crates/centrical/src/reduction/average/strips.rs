@@ -5,10 +5,10 @@ use std::ops::Range;
 use nalgebra::Vector3;
 use pulp::{Simd, WithSimd};
 
-use super::doubtful::{is_tone, longest_run, may_be_longer, stuck_on_any_axis, widened};
 use super::samples::Samples;
 use crate::reduction::simd::lanes::{dot, largest, range, subtract, widest};
 use crate::reduction::triangle::{TERMS, Triangle};
+use crate::statistics::{is_tone, longest_run, may_be_longer, stuck_on_any_axis, widened};
 
 /// Most samples of a strip.
 const STRIP: usize = 512;

@@ -11,13 +11,13 @@
 
 use std::ops::Range;
 
-use crate::statistics::whole;
+use super::robust::whole;
 
 /// Probability below which a count is not chance.
 const CHANCE: f64 = 1e-6;
 
 /// The samples in a run of equal readings longer than chance makes, on any axis; `None` without such a run.
-pub(super) fn stuck_on_any_axis(f_z: [&[f64]; 3], longest: &[f64; 3]) -> Option<Vec<bool>> {
+pub(crate) fn stuck_on_any_axis(f_z: [&[f64]; 3], longest: &[f64; 3]) -> Option<Vec<bool>> {
     let mut stuck: Option<Vec<bool>> = None;
     for (f, longest) in f_z.into_iter().zip(longest) {
         let mut from = 0;
@@ -34,13 +34,13 @@ pub(super) fn stuck_on_any_axis(f_z: [&[f64]; 3], longest: &[f64; 3]) -> Option<
 
 /// The longest run of equal readings that chance makes: `n` readings of that repeat rate have a longer one in fewer than
 /// one case in a million. Readings that rounding may hold still have runs of any length.
-pub(super) fn longest_run(n: usize, repeat_rate: f64) -> f64 {
+pub(crate) fn longest_run(n: usize, repeat_rate: f64) -> f64 {
     if repeat_rate < 1.0 { 1.0 + (CHANCE / n as f64).ln() / repeat_rate.ln() } else { f64::INFINITY }
 }
 
 /// Whether a run longer than that has a reading in a range. A run of `m` equal pairs of neighbours covers an `m`-th
 /// place: few pairs have to be compared.
-pub(super) fn may_be_longer(f: &[f64], range: &Range<usize>, longest: f64) -> bool {
+pub(crate) fn may_be_longer(f: &[f64], range: &Range<usize>, longest: f64) -> bool {
     if longest >= f.len() as f64 {
         return false;
     }
@@ -57,14 +57,14 @@ pub(super) fn may_be_longer(f: &[f64], range: &Range<usize>, longest: f64) -> bo
 }
 
 /// The most frequent value of the readings, and its count.
-pub(super) fn standing(f: &[f64]) -> (f64, usize) {
+pub(crate) fn standing(f: &[f64]) -> (f64, usize) {
     let mut values: Vec<f64> = f.iter().copied().filter(|value| value.is_finite()).collect();
     values.sort_by(f64::total_cmp);
     values.chunk_by(f64::eq).map(|same| (same[0], same.len())).max_by_key(|same| same.1).unwrap_or((f64::NAN, 0))
 }
 
 /// Whether nearly all of some samples are at one distance from the one before: that is a tone, and no spikes.
-pub(super) fn is_tone(samples: &[usize]) -> bool {
+pub(crate) fn is_tone(samples: &[usize]) -> bool {
     let mut steps: Vec<usize> = samples.windows(2).map(|pair| pair[1] - pair[0]).collect();
     steps.sort_unstable();
     let commonest = steps.chunk_by(usize::eq).max_by_key(|same| same.len());
@@ -73,7 +73,7 @@ pub(super) fn is_tone(samples: &[usize]) -> bool {
 
 /// Readings on one side of a fit.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub(super) struct Side {
+pub(crate) struct Side {
     /// Number of all of them.
     pub all: f64,
     /// Number of those beyond half the limit.
@@ -99,7 +99,7 @@ const SLOWER: f64 = 3.0;
 
 /// The limit that keeps a tail, over the limit; `None` where the readings beyond the limit are not a tail. One alone is not: noise of the normal law has
 /// one in some plateaus, which moves no mean. Fewer than one in twenty exponential tails has a reading beyond the new limit.
-pub(super) fn widened(side: Side) -> Option<f64> {
+pub(crate) fn widened(side: Side) -> Option<f64> {
     let Side { all, beyond_half, beyond } = side;
     let is_tail = beyond <= FARTHEST * beyond_half && beyond <= SLOWER * beyond_half * beyond_half / all;
     // The scale of the exponential, in limits.
@@ -113,7 +113,7 @@ pub(super) fn widened(side: Side) -> Option<f64> {
 /// when it is rounded, makes the outermost number no more than `n_1^2 / n_2` of the next two on average. A number that
 /// Poisson's law exceeds less than once in a million times about that average is a pile. Noise below a digit allows no
 /// decision: the crest of a slow wave piles up as well.
-pub(super) fn piled_up(mut readings: Vec<f64>) -> Option<(f64, usize)> {
+pub(crate) fn piled_up(mut readings: Vec<f64>) -> Option<(f64, usize)> {
     readings.sort_by(f64::total_cmp);
     let counts: Vec<(f64, usize)> = readings.chunk_by(f64::eq).map(|same| (same[0], same.len())).collect();
     let at_end = |[outer, next, inner]: [(f64, usize); 3]| {
@@ -126,7 +126,7 @@ pub(super) fn piled_up(mut readings: Vec<f64>) -> Option<(f64, usize)> {
 }
 
 /// Whether this number of readings at the end of their range calls for a closer look: nearly always it is one or two.
-pub(super) fn may_be_piled_up(most: usize) -> bool {
+pub(crate) fn may_be_piled_up(most: usize) -> bool {
     poisson_tail(most, 1.0) < CHANCE
 }
 
