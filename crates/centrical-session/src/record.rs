@@ -11,14 +11,14 @@ mod sample_cache;
 mod writer;
 
 pub(crate) use self::columns::{
-    CheckedTable, Form as TableForm, NEWTONOMETER_RECORD, PULSES, RECORD, StatedUnits, TELEMETRY, named_columns,
+    CheckedTable, Form as TableForm, NEWTONOMETER_RECORD, PULSES, RECORD, StatedUnits, TELEMETRY, TimeSpan,
+    named_columns,
 };
 pub use self::columns::{Column, Columns, MissingReadings, Scale};
 pub(crate) use self::equal_columns::EqualColumns;
 pub use self::input::Input;
 pub(crate) use self::input::hexadecimal;
 pub use self::overview::RecordOverview;
-pub(crate) use self::overview::refuse_years;
 pub(crate) use self::passes::RecordFile;
 pub use self::reader::{RecordReader, stretch};
 pub(crate) use self::reader::{pulses_of, read_records, read_telemetry, telemetry_of};

@@ -365,16 +365,18 @@ fn one_channel_of_one_mounting_in_another_unit_is_named() {
 /// Nanoseconds in a column of seconds make a record of centuries, whose slopes nobody can compute.
 #[test]
 fn a_time_in_another_unit_is_refused() {
-    let copy = Copy::new();
-    copy.edit("records/m07.csv", |text| {
-        let row = |line: &str| match line.split_once(',') {
-            Some((t, readings)) => {
-                t.parse().map_or_else(|_| line.to_owned(), |t: f64| format!("{},{readings}", 1e9 * t))
-            }
-            None => line.to_owned(),
-        };
-        text.lines().map(row).collect::<Vec<_>>().join("\n")
-    });
-    refused(&copy, &["m07.csv: found readings over ", " years, expected time in s"]);
+    for file in ["records/m07.csv", "telemetry/m07.csv"] {
+        let copy = Copy::new();
+        copy.edit(file, |text| {
+            let row = |line: &str| match line.split_once(',') {
+                Some((t, readings)) => {
+                    t.parse().map_or_else(|_| line.to_owned(), |t: f64| format!("{},{readings}", 1e9 * t))
+                }
+                None => line.to_owned(),
+            };
+            text.lines().map(row).collect::<Vec<_>>().join("\n")
+        });
+        refused(&copy, &[&format!("{file}: found readings over "), " years, expected time in s"]);
+    }
     toml("angle = \"180 deg\"", "angle = 180", &["found 180.0", "a number alone is in rad"]);
 }

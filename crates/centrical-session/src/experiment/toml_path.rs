@@ -28,8 +28,12 @@ impl<'a> TomlPath<'a> {
 
     /// The value of `key` in this table is not what it should be.
     pub fn unexpected(&self, key: &str, found: impl Into<String>, expected: impl Into<String>) -> Error {
-        let place = Place::Key { table: self.table.clone(), key: key.to_owned() };
-        Error::content(self.file, place, found, expected)
+        Error::content(self.file, self.key(key), found, expected)
+    }
+
+    /// The place of `key` in this table.
+    pub fn key(&self, key: &str) -> Place {
+        Place::Key { table: self.table.clone(), key: key.to_owned() }
     }
 
     /// The value of `key` in SI, within `[low, high]`; `meaning` says what the bounds stand for.

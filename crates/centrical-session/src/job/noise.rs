@@ -12,7 +12,7 @@ use super::reduce::reduce;
 use crate::document::{NoiseAnalysis, ReadingNoise};
 use crate::error::{Error, Place};
 use crate::experiment::{Folder, PlateauName, Session};
-use crate::record::{CheckedTable, Column, Columns, RECORD, Scale, StatedUnits, TableForm, named_columns};
+use crate::record::{CheckedTable, Column, Columns, RECORD, Scale, StatedUnits, TableForm, TimeSpan, named_columns};
 use crate::units::Dimension;
 
 /// Which readings are analysed, and how.
@@ -151,7 +151,7 @@ impl Series {
         let mut fields = vec![time.field(Rule::Ascending { stamps: true })];
         fields.extend(readings.iter().map(|column| column.field(Rule::OrMissing)));
         let (mut t, mut values) = (Vec::new(), vec![Vec::new(); readings.len()]);
-        let mut ends = [f64::INFINITY, f64::NEG_INFINITY];
+        let mut span = TimeSpan::EMPTY;
         let file = source.name().to_owned();
         let columns = || std::iter::once(time).chain(readings);
         let form = TableForm { lines, missing: None, expected: RECORD };
@@ -161,7 +161,7 @@ impl Series {
             for rows in batch.iter_mut().filter(|rows| !rows[0].is_empty()) {
                 rows.iter_mut().zip(columns()).for_each(|(values, column)| column.scale.apply(values));
                 let times = &rows[0];
-                ends = [ends[0].min(times[0]), ends[1].max(times[times.len() - 1])];
+                span.see(times);
                 let inside = times.partition_point(|t| *t < window[0])..times.partition_point(|t| *t <= window[1]);
                 t.extend_from_slice(&times[inside.clone()]);
                 for (kept, values) in values.iter_mut().zip(&rows[1..]) {
@@ -171,7 +171,9 @@ impl Series {
             let read = table.reader.bytes();
             advance(progress, read - std::mem::replace(&mut bytes, read))?;
         }
+        span.refuse_years(&file, Place::Whole)?;
         if t.is_empty() {
+            let TimeSpan(ends) = span;
             let found = format!("nothing from {} s to {} s", window[0], window[1]);
             let expected = format!("a stretch of the record, which runs from {} s to {} s", ends[0], ends[1]);
             return Err(Error::content(&file, Place::Whole, found, expected));

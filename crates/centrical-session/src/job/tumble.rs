@@ -18,7 +18,7 @@ use crate::experiment::{
     misalignments_left_out, refuse_another_session, write_attitudes, write_plateaus,
 };
 use crate::quantity::{Date, NotThatQuantity, Quantity};
-use crate::record::{EqualColumns, Input, RECORD, Scale, named_columns, refuse_years};
+use crate::record::{EqualColumns, Input, RECORD, Scale, named_columns};
 use crate::reduced::{Reduced, ReducedPlateau, rest_rows};
 use crate::settings::toml_text;
 use crate::units::Dimension;
@@ -238,7 +238,6 @@ fn record(request: &TumbleRequest, file: &Path, progress: OnProgress) -> Result<
     let mut equal = EqualColumns::of(request.readings.each_ref().map(ToString::to_string));
     equal.see(record.as_slice().f_z);
     equal.refuse(file)?;
-    refuse_years(file, record.t.first().copied(), record.t.last().copied())?;
     Ok(record)
 }
 

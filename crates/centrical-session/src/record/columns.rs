@@ -3,6 +3,7 @@
 
 use std::path::{Path, PathBuf};
 
+use centrical::history::DAYS_IN_YEAR;
 use centrical_table::{
     ColumnName, Extent, Field, Rows, Rule, Source, TableLines, TableReader, UnitsFound, is_missing, to_scale,
 };
@@ -87,6 +88,38 @@ impl Scale {
         if self != Self::factor(1.0) {
             to_scale(values, self.offset, self.factor);
         }
+    }
+}
+
+/// First and last of the times of a record, of telemetry or of pulses [s].
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct TimeSpan(pub [f64; 2]);
+
+impl TimeSpan {
+    /// Before the first time.
+    pub const EMPTY: Self = Self([f64::INFINITY, f64::NEG_INFINITY]);
+
+    /// Takes in further times, which do not run backwards.
+    pub fn see(&mut self, times: &[f64]) {
+        if let (Some(first), Some(last)) = (times.first(), times.last()) {
+            self.0 = [self.0[0].min(*first), self.0[1].max(*last)];
+        }
+    }
+
+    /// After the last time: refuses years, since time is in another unit then.
+    ///
+    /// # Errors
+    /// [`Error`] at `place` in `file`, with the length.
+    pub fn refuse_years(self, file: &Path, place: Place) -> Result<(), Error> {
+        /// Longest record of a laboratory [years].
+        const LONGEST: f64 = 10.0;
+        let years = (self.0[1] - self.0[0]) / (DAYS_IN_YEAR * 86_400.0);
+        if years > LONGEST {
+            let expected =
+                "time in s; another unit stands beside its column, as in time = { column = \"t\", unit = \"ns\" }";
+            return Err(Error::content(file, place, format!("readings over {years:.0} years"), expected));
+        }
+        Ok(())
     }
 }
 

@@ -7,6 +7,8 @@
 mod part;
 mod stamps;
 
+use std::path::Path;
+
 use centrical_table::{Extent, Rows, Source};
 
 use self::part::{Part, Reading, reading_at};
@@ -69,6 +71,11 @@ impl Joined {
     /// The rows that were read last.
     pub fn batch(&mut self) -> &mut [Rows] {
         &mut self.sets[..self.filled]
+    }
+
+    /// The file of newtonometer 1.
+    pub fn file(&self) -> &Path {
+        self.parts[0].file()
     }
 
     /// Bytes of the files that were read so far.

@@ -1,13 +1,8 @@
 //! What a record looks like: few enough numbers to keep in a result and to draw.
 
-use std::path::Path;
-
-use centrical::history::DAYS_IN_YEAR;
 use centrical::reduction::Extremes;
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
-
-use crate::error::{Error, Place};
 
 /// Lowest and highest reading of each axis in equal steps of time.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -47,22 +42,6 @@ impl RecordOverview {
         let (low, high) = (steps(|e| &e.low, f64::min), steps(|e| &e.high, f64::max));
         Self { mounting, start, step, low, high }
     }
-}
-
-/// Refuses the record in `file` if it lasts for years from its first time to the last [s]: its time is in another unit.
-///
-/// # Errors
-/// [`Error`] with the length.
-pub(crate) fn refuse_years(file: &Path, first: Option<f64>, last: Option<f64>) -> Result<(), Error> {
-    /// Longest record of a laboratory [years].
-    const LONGEST: f64 = 10.0;
-    let length = first.zip(last).map_or(0.0, |(first, last)| last - first);
-    let years = length / (DAYS_IN_YEAR * 86_400.0);
-    if years <= LONGEST {
-        return Ok(());
-    }
-    let expected = "time in s; another unit stands beside its column, as in time = { column = \"t\", unit = \"ns\" }";
-    Err(Error::content(file, Place::Whole, format!("readings over {years:.0} years"), expected))
 }
 
 /// Index of a step; the record's last instant belongs to the last one.

@@ -6,10 +6,12 @@ use centrical::reduction::{Record, RecordSlice, SpeedTrace};
 use centrical::{OnProgress, advance};
 use centrical_table::{Extent, Index, Reread, Rows, Source, Stamps, TableLines};
 
-use super::columns::{CheckedTable, Column, Columns, Form, MissingReadings, PULSES, RECORD, Scale, TELEMETRY};
+use super::columns::{
+    CheckedTable, Column, Columns, Form, MissingReadings, PULSES, RECORD, Scale, TELEMETRY, TimeSpan,
+};
 use super::equal_columns::EqualColumns;
 use super::joined::Joined;
-use crate::error::Error;
+use crate::error::{Error, Place};
 
 /// Reads the record of a mounting in its file, or in the three of its newtonometers, as far as it was written. `progress` is
 /// called with the number of bytes read.
@@ -76,6 +78,8 @@ pub struct RecordReader {
     scales: Scales,
     /// Of one file with three readings, where it is asked.
     equal: Option<EqualColumns>,
+    /// Where it must not be of years.
+    span: Option<TimeSpan>,
     /// Bytes that [`RecordReader::newly_read`] has returned.
     reported: u64,
 }
@@ -86,9 +90,10 @@ impl RecordReader {
     /// # Errors
     /// If it cannot be read.
     pub fn open(file: &Path, columns: &Columns) -> Result<Self, Error> {
-        // Readings to be compensated are as they are.
+        // Readings to be compensated are as they are, in any unit of time.
         let form = Form { lines: columns.record_lines, missing: None, expected: RECORD };
-        Self::with(Source::open(file, RECORD)?, Extent::Whole, &columns.of_record(), form)
+        let record = Self::with(Source::open(file, RECORD)?, Extent::Whole, &columns.of_record(), form)?;
+        Ok(Self { span: None, ..record })
     }
 
     /// Reads the record in a source, or in three, one for each newtonometer.
@@ -100,7 +105,7 @@ impl RecordReader {
         match <[Source; 3]>::try_from(sources) {
             Ok(sources) => {
                 let table = Tables::Three(Box::new(Joined::open(sources, extent, columns)?));
-                Ok(Self { table, scales: Scales::of(&of_record), equal: None, reported: 0 })
+                Ok(Self::of(table, &of_record))
             }
             Err(mut sources) => {
                 let form = Form { lines: columns.record_lines, missing, expected: RECORD };
@@ -112,8 +117,11 @@ impl RecordReader {
     }
 
     fn with(source: Source, extent: Extent, columns: &[&Column], form: Form) -> Result<Self, Error> {
-        let table = Tables::One(Box::new(CheckedTable::of_columns(source, extent, columns, form)?));
-        Ok(Self { table, scales: Scales::of(columns), equal: None, reported: 0 })
+        Ok(Self::of(Tables::One(Box::new(CheckedTable::of_columns(source, extent, columns, form)?)), columns))
+    }
+
+    fn of(table: Tables, columns: &[&Column]) -> Self {
+        Self { table, scales: Scales::of(columns), equal: None, span: Some(TimeSpan::EMPTY), reported: 0 }
     }
 
     /// The next rows: columns of time [s] and of readings [m/s^2] ([`stretch`]), several sets of them, to be worked on where they
@@ -123,7 +131,8 @@ impl RecordReader {
     ///
     /// # Errors
     /// If the file cannot be read, has no rows, lacks a column, or a value is not finite (unless such rows are left out); if time runs
-    /// backwards; if the file names other units than those of the columns; at the end, if two readings of a session are the same.
+    /// backwards; if the file names other units than those of the columns; at the end, if two readings of a session are the same, or
+    /// its time is of years.
     pub fn next_batch(&mut self) -> Result<Option<&mut [Rows]>, Error> {
         let is_over = match &mut self.table {
             Tables::One(table) => table.next_batch()?.is_none(),
@@ -133,13 +142,20 @@ impl RecordReader {
             if let (Some(equal), Tables::One(table)) = (&self.equal, &self.table) {
                 equal.refuse(&table.file)?;
             }
+            if let Some(span) = self.span {
+                span.refuse_years(self.table.file(), Place::Whole)?;
+            }
             return Ok(None);
         }
         if let Some(equal) = &mut self.equal {
             // Before the scales, which may differ.
             self.table.batch().iter().for_each(|rows| equal.see([&rows[1], &rows[2], &rows[3]]));
         }
-        Ok(Some(self.scales.apply_to(self.table.batch())))
+        let batch = self.scales.apply_to(self.table.batch());
+        if let Some(span) = &mut self.span {
+            batch.iter().for_each(|rows| span.see(&rows[0]));
+        }
+        Ok(Some(batch))
     }
 
     /// The rows that were read last, once more.
@@ -209,6 +225,14 @@ enum Tables {
 }
 
 impl Tables {
+    /// The file, the first of three.
+    fn file(&self) -> &Path {
+        match self {
+            Self::One(table) => &table.file,
+            Self::Three(joined) => joined.file(),
+        }
+    }
+
     fn batch(&mut self) -> &mut [Rows] {
         match self {
             Self::One(table) => table.reader.batch(),

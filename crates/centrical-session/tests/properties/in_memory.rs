@@ -113,6 +113,15 @@ fn what_is_no_record_is_refused() {
     assert!(backwards.contains("mounting 1: sample 701: found time 1 s"), "{backwards}");
     let empty = refused(&|recorded| recorded[5] = Recorded::default());
     assert!(empty.contains("mounting 6: record too short"), "{empty}");
+    // Nanoseconds in columns of seconds.
+    let years = |key: &str, spoil: &dyn Fn(&mut Recorded)| {
+        let message = refused(&|recorded| spoil(&mut recorded[1]));
+        assert!(message.contains(&format!("[[mounting]] 2, {key}: found readings over ")), "{message}");
+        assert!(message.contains(" years, expected time in s; another unit"), "{message}");
+    };
+    years("record", &|recorded| recorded.record.t.iter_mut().for_each(|t| *t *= 1e9));
+    years("telemetry", &|recorded| recorded.telemetry.as_mut().unwrap().t.iter_mut().for_each(|t| *t *= 1e9));
+    years("pulses", &|recorded| recorded.pulses = Some(vec![0.0, 1e9]));
 }
 
 /// A reduced session, its table as columns: the plateaus of its own file.

@@ -1,5 +1,6 @@
 //! Rests that a session finds in the records of its `[[tumble]]`.
 
+use std::fs;
 use std::path::{Path, PathBuf};
 
 use centrical_session::{
@@ -83,4 +84,12 @@ fn wrong_records_of_rests_are_refused() {
     assert!(message.contains("record.csv: found rests of 96.4") && message.contains("of gravity"), "{message}");
     let message = refused(&of_example("").replace("record.csv", "nowhere.csv"));
     assert!(message.contains("nowhere.csv"), "{message}");
+    let seconds = fs::read_to_string(example("tumble/record.csv")).unwrap();
+    let row = |line: &str| match line.split_once(',') {
+        Some((t, readings)) => t.parse().map_or(line.to_owned(), |t: f64| format!("{},{readings}", 1e9 * t)),
+        None => line.to_owned(),
+    };
+    fs::write(folder.path().join("ns.csv"), seconds.lines().map(row).collect::<Vec<_>>().join("\n")).unwrap();
+    let message = refused(&alone("record = \"ns.csv\""));
+    assert!(message.contains("ns.csv: found readings over ") && message.contains("expected time in s"), "{message}");
 }

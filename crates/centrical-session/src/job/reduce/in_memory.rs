@@ -6,7 +6,8 @@ use rayon::prelude::*;
 
 use super::mounting::{OfRecord, ShownSpeeds, located};
 use crate::error::{Error, Place};
-use crate::experiment::Session;
+use crate::experiment::{Session, TomlPath};
+use crate::record::{Column, TimeSpan};
 
 /// What was recorded of one mounting, in the units of the session's columns.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -50,7 +51,7 @@ fn reduce_mounting(
     recorded: Recorded,
     progress: OnProgress<usize>,
 ) -> Result<OfRecord, Error> {
-    let Recorded { record, telemetry, pulses } = in_si(session, recorded);
+    let Recorded { record, telemetry, pulses } = in_si(session, number, recorded)?;
     let refused = |source| Error::reduction(&session.file, number, source);
     let survey = Survey::of(record.as_slice()).map_err(refused)?.with_resolution(session.type_b.resolution);
     advance(progress, 0)?;
@@ -66,17 +67,23 @@ fn reduce_mounting(
 }
 
 /// The numbers of the columns in SI.
-fn in_si(session: &Session, recorded: Recorded) -> Recorded {
+fn in_si(session: &Session, number: usize, recorded: Recorded) -> Result<Recorded, Error> {
     let Recorded { mut record, mut telemetry, mut pulses } = recorded;
     let columns = &session.columns;
-    columns.time.scale.apply(&mut record.t);
+    let times_in_si = |key: &str, column: &Column, times: &mut [f64]| {
+        column.scale.apply(times);
+        let mut span = TimeSpan::EMPTY;
+        span.see(times);
+        span.refuse_years(&session.file, TomlPath::entry(&session.file, "mounting", number).key(key))
+    };
+    times_in_si("record", &columns.time, &mut record.t)?;
     record.f_z.iter_mut().zip(&columns.f).for_each(|(values, column)| column.scale.apply(values));
     if let Some(SpeedTrace { t, omega }) = &mut telemetry {
-        columns.telemetry_time.scale.apply(t);
+        times_in_si("telemetry", &columns.telemetry_time, t)?;
         columns.speed.scale.apply(omega);
     }
     if let Some(times) = &mut pulses {
-        columns.pulse.scale.apply(times);
+        times_in_si("pulses", &columns.pulse, times)?;
     }
-    Recorded { record, telemetry, pulses }
+    Ok(Recorded { record, telemetry, pulses })
 }

@@ -13,7 +13,7 @@ use rayon::prelude::*;
 
 use crate::error::{Error, Instead};
 use crate::experiment::{Session, axes_text};
-use crate::record::{MemoryBudget, RecordFile, RecordOverview, SampleCache, refuse_years};
+use crate::record::{MemoryBudget, RecordFile, RecordOverview, SampleCache};
 use crate::reduced::MountingFindings;
 
 /// A mounting's number, and its plateaus or why they are missing.
@@ -116,8 +116,6 @@ fn reduce_mounting(
     let file = session.record_file(number)?;
     let refused = |source| Error::reduction(file, number, source);
     let (survey, interpolated) = record.survey(cache)?;
-    let mut times = survey.extremes().map(|extremes| extremes.t);
-    refuse_years(file, times.next(), times.last())?;
     let survey = survey.with_resolution(session.type_b.resolution);
     let pulses = if session.speeds.counts_pulses() { session.pulses(number, Extent::Whole)? } else { None };
     let speeds = ShownSpeeds { telemetry: session.telemetry(number, Extent::Whole)?, pulses };
