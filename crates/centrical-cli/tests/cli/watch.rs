@@ -92,7 +92,15 @@ fn a_growing_session_is_followed_over_a_stop() {
         append(&records.join("m01.csv"), piece);
         thread::sleep(Duration::from_millis(100));
     }
+    // Written again with the same bytes, and gone for a moment: it is the same experiment file.
+    let experiment = copy.session().join("experiment.toml");
+    let aside = experiment.with_extension("aside");
+    fs::copy(&experiment, &aside).unwrap();
+    fs::remove_file(&experiment).unwrap();
+    thread::sleep(Duration::from_millis(200));
+    fs::rename(&aside, &experiment).unwrap();
     until("a plateau of the first mounting", || history(&copy.out()).len() >= 3);
+    thread::sleep(Duration::from_millis(200));
     interrupt(&watch);
     assert_eq!(watch.wait().unwrap().code(), Some(0));
     let come = history(&copy.out()).len();

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use centrical_table::{Bytes, Source};
 
+use super::file_marks::FileMarks;
 use crate::error::Error;
 use crate::record::{NEWTONOMETER_RECORD, RECORD};
 
@@ -14,12 +15,14 @@ use crate::record::{NEWTONOMETER_RECORD, RECORD};
 pub struct Folder {
     path: PathBuf,
     in_memory: BTreeMap<PathBuf, Bytes>,
+    /// What the files were that are read once and kept.
+    marks: FileMarks,
 }
 
 impl Folder {
     /// The folder at a path, which need not exist if all its files are in memory.
     pub fn at(path: &Path) -> Self {
-        Self { path: path.to_owned(), in_memory: BTreeMap::new() }
+        Self { path: path.to_owned(), ..Self::default() }
     }
 
     /// The folder of a file.
@@ -56,6 +59,20 @@ impl Folder {
             Some(bytes) => Ok(Source::in_memory(file, bytes.clone())),
             None => Ok(Source::open(file, expected)?),
         }
+    }
+
+    /// Opens a file that is read once and kept, such as a table of means: if it is on disk, it is marked.
+    pub(super) fn open_kept(&self, file: &Path, expected: &str) -> Result<Source, Error> {
+        let source = self.open(file, expected)?;
+        if !self.in_memory.contains_key(file) {
+            self.marks.mark(&source)?;
+        }
+        Ok(source)
+    }
+
+    /// What the files were that are kept.
+    pub(crate) fn marks(&self) -> &FileMarks {
+        &self.marks
     }
 
     /// Opens the record of a mounting: its file, or the three of its newtonometers.

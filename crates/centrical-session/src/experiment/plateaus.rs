@@ -81,7 +81,7 @@ impl PlateauTable {
     /// Reads the table of that name and sorts it by mounting, keeping the order within each.
     pub(crate) fn read(folder: &Folder, name: &str, mountings: usize, has_speeds: bool) -> Result<Self, Error> {
         let file = folder.join(name);
-        let table = folder.open(&file, PLATEAUS)?;
+        let table = folder.open_kept(&file, PLATEAUS)?;
         let further = if has_speeds { Further::Speeds } else { Further::Nothing };
         let mut rows = plateaus_of(&table, mountings, further)?;
         rows.sort_by_key(|row| row.mounting);

@@ -229,10 +229,10 @@ impl RestTable {
     pub(crate) fn read(&mut self, folder: &Folder) -> Result<(), Error> {
         let RestSource::Table(file) = &self.source else { return Ok(()) };
         let further = if self.turning.is_some() { Further::Bends } else { Further::Nothing };
-        self.means = read_rests(&folder.open(file, PLATEAUS)?, further)?;
+        self.means = read_rests(&folder.open_kept(file, PLATEAUS)?, further)?;
         let Some(attitudes) = &mut self.attitudes else { return Ok(()) };
         if let Some(file) = attitudes.file.as_ref() {
-            attitudes.up_b = read_attitudes(&folder.open(file, ATTITUDES)?)?;
+            attitudes.up_b = read_attitudes(&folder.open_kept(file, ATTITUDES)?)?;
         }
         let named = attitudes.file.as_ref().unwrap_or(file);
         if attitudes.up_b.len() != self.means.len() {

@@ -7,7 +7,6 @@ use centrical::{
     Centrifuge, ErrorModel, Experiment, Extension, MeasurementModel, PairRelation, Rotation, SetPoint, Site,
 };
 
-use super::file_marks::FileMarks;
 use super::folder::Folder;
 use super::form::{Form, ModelTable, MountingTable, SiteTable};
 use super::plateaus::PlateauTable;
@@ -19,7 +18,7 @@ use super::unit::OutputUnit;
 use super::{attitude, columns, schedule, speeds, terms, uncertainty, unit};
 use crate::error::{Error, quoted};
 use crate::record::Columns;
-use crate::settings::{from_toml, read_settings};
+use crate::settings::{from_toml, read_settings, settings_of};
 use crate::units::Dimension;
 
 /// Name of the experiment file in a session folder.
@@ -69,8 +68,6 @@ pub struct Session {
     pub(super) priors: Vec<PriorEntry>,
     /// Where its files are.
     pub(crate) folder: Folder,
-    /// The experiment file and the table of plateaus as they were read.
-    pub(crate) marks: FileMarks,
 }
 
 /// The files of one mounting.
@@ -118,12 +115,11 @@ impl Session {
 
     fn read_with(path: &Path, read: impl FnMut(&mut RestTable, &Folder) -> Result<(), Error>) -> Result<Self, Error> {
         let file = experiment_file(path);
-        let before = FileMarks::of([file.as_path()]);
-        let session = Self::parse_with(&read_text(&file)?, &file, Folder::of(&file), read)?;
-        before.refuse_changed()?;
-        let table = session.plateaus.iter().flat_map(|table| &table.file);
-        let marks = FileMarks::of(table.chain([&file]).map(PathBuf::as_path));
-        Ok(Self { marks, ..session })
+        let folder = Folder::of(&file);
+        let text = settings_of(&folder.open_kept(&file, EXPERIMENT)?, EXPERIMENT)?;
+        let session = Self::parse_with(&text, &file, folder, read)?;
+        session.folder.marks().refuse_changed()?;
+        Ok(session)
     }
 
     /// The session of an experiment file with this `text`, as if it were `experiment.toml` in `folder`.
@@ -281,7 +277,6 @@ impl Session {
             durations: Vec::new(),
             priors: prior::entries(&form.prior),
             folder,
-            marks: FileMarks::default(),
         })
     }
 }

@@ -137,7 +137,7 @@ pub(crate) fn directions(
         AttitudeList::Named(name) if name == CUBE => return Ok((cube_directions(), None)),
         AttitudeList::Named(name) => {
             let file = folder.join(name);
-            return Ok((read_directions(&folder.open(&file, ATTITUDES)?)?, Some(file)));
+            return Ok((read_directions(&folder.open_kept(&file, ATTITUDES)?)?, Some(file)));
         }
         AttitudeList::Listed(listed) => listed,
     };

@@ -20,7 +20,7 @@ use self::own_readings::refuse_shared_readings;
 pub(crate) use self::own_readings::{refuse_copies, refuse_repeated_rests};
 pub(crate) use self::rests::{find_rests, is_of_gravity, mean_size, with_all_rests};
 use crate::error::{Error, Place};
-use crate::experiment::{FileMarks, Session};
+use crate::experiment::Session;
 use crate::record::Input;
 use crate::reduced::{MountingFindings, Reduced, ReducedPlateau};
 use crate::units::rpm;
@@ -36,13 +36,12 @@ const OTHER_UNIT: f64 = 0.1;
 /// # Errors
 /// [`Error`] naming the file, the place, what was found and what was expected.
 pub fn reduce<'s>(session: &'s Session, progress: OnProgress) -> Result<(Cow<'s, Session>, Reduced), Error> {
-    let before = FileMarks::of(session.files());
+    let before = session.folder.marks().and(session.files());
     let (session, mut reduced) = reduce_without_inputs(session, progress)?;
     let folder = &session.folder;
     let input = |file| Input::of(folder.path(), &folder.open(file, Input::EXPECTED)?, progress);
     let inputs = session.files().into_par_iter().map(input);
     reduced.inputs = inputs.collect::<Result<_, _>>()?;
-    session.marks.refuse_changed()?;
     before.refuse_changed()?;
     refuse_shared_readings(&session, &reduced)?;
     let mut files_of_rests = session.rest_tables.iter().filter_map(|table| table.files().next());

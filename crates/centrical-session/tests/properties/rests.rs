@@ -102,6 +102,18 @@ fn rests_and_centrifuge_are_one_fit() {
         .unwrap();
     let reduced = calibrate(&Session::read(again.path()).unwrap(), &[], Method::Exact, &unwatched).unwrap();
     assert_eq!(reduced.parameters, together.parameters);
+    // A table that has changed since it was read gives no result; one with another time and the same bytes does.
+    let table = folder.path().join("rests.csv");
+    let bytes = fs::read(&table).unwrap();
+    let touched = || {
+        let file = fs::File::options().write(true).open(&table).unwrap();
+        file.set_modified(std::time::SystemTime::UNIX_EPOCH).unwrap();
+        reduce(&session, &unwatched)
+    };
+    assert!(touched().is_ok());
+    fs::write(&table, [&bytes[..], b"\n"].concat()).unwrap();
+    let message = touched().unwrap_err().to_string();
+    assert!(message.contains("rests.csv: found another file than was read before"), "{message}");
     // A watch knows the centrifuge alone.
     let on_arm = session.on_arm();
     assert_eq!((on_arm.rests().count(), on_arm.experiment.set_points.len()), (0, 108));

@@ -134,7 +134,7 @@ impl<'a> Following<'a> {
         let mut watch = Watch::new(self.session, self.request.quiet);
         let (mut note, mut is_frozen) = (None, false);
         loop {
-            self.session.marks.refuse_changed()?;
+            self.session.folder.marks().refuse_replaced()?;
             let arrivals = watch.look(stop)?;
             let count = arrivals.len();
             for (k, observation) in arrivals.into_iter().enumerate() {
