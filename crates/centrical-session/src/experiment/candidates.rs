@@ -67,6 +67,7 @@ impl Planning {
         }
         session.rest_tables = rests(path, &at, table)?;
         session.add_rests();
+        session.state_uncertainties(&form)?;
         let scenarios = scenarios(path, &form, &session)?;
         let candidates = Candidates {
             scenarios,

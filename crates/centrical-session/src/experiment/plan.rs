@@ -127,6 +127,7 @@ impl PlannedSession {
         rests::refuse_records(file, &session.rest_tables)?;
         session.rest_tables.iter_mut().try_for_each(|table| table.read(&session.folder))?;
         session.add_rests();
+        session.state_uncertainties(form)?;
         let table = form.plan.as_ref();
         let of_table = |key: fn(&PlanTable) -> &Option<Quantity>| table.and_then(|table| key(table).as_ref());
         let (noise, usual) = noise(file, of_table(|t| &t.noise), of_table(|t| &t.floor), of_table(|t| &t.duration))?;

@@ -354,6 +354,16 @@ pub(crate) fn add_rests(experiment: &mut Experiment, tables: &[RestTable]) {
     }
 }
 
+/// Adds two rests in one attitude for each table that is not read or found yet, known if those will be.
+pub(super) fn add_awaited(experiment: &mut Experiment, tables: &[RestTable]) {
+    for table in tables.iter().filter(|table| table.is_awaited()) {
+        let is_known = table.attitudes.is_some() || table.record().is_some_and(|record| record.attitudes.is_some());
+        let up = Vector3::z();
+        let rest = if is_known { Position::known("r", &up, 1.0) } else { Position::free("r", &up) };
+        experiment.positions.extend([rest.clone(), rest].map(|rest| rest.in_switch_on(table.switch_on)));
+    }
+}
+
 /// Refuses rests that are still to be found in a record: a plan is read without one.
 pub(crate) fn refuse_records(file: &Path, tables: &[RestTable]) -> Result<(), Error> {
     let Some(recorded) = tables.iter().position(|table| table.record().is_some()) else { return Ok(()) };

@@ -1,5 +1,6 @@
 //! A session: what `experiment.toml` says and the files that it names.
 
+use std::f64::consts::PI;
 use std::path::{Path, PathBuf};
 
 use centrical::TypeB;
@@ -11,7 +12,7 @@ use super::folder::Folder;
 use super::form::{Form, ModelTable, MountingTable, SiteTable};
 use super::plateaus::PlateauTable;
 use super::prior::{self, PriorEntry};
-use super::rests::RestTable;
+use super::rests::{self, RestTable};
 use super::speeds::{SpeedSource, Speeds};
 use super::toml_path::TomlPath;
 use super::unit::OutputUnit;
@@ -162,6 +163,7 @@ impl Session {
         session.rest_tables.iter_mut().try_for_each(|table| read(table, &session.folder))?;
         session.refuse_rests_alone()?;
         session.add_rests();
+        session.state_uncertainties(&form)?;
         // Whatever is wrong with the priors is said before any record is read, unless they may be of rests that are to be found.
         if !session.rest_tables.iter().any(RestTable::is_awaited) {
             session.model()?;
@@ -225,7 +227,19 @@ impl Session {
         prior::with_priors(&self.file, model, &self.priors)
     }
 
-    /// Everything but the set points.
+    /// Takes what `[uncertainty]` states of the experiment, which has its set points and rests.
+    pub(super) fn state_uncertainties(&mut self, form: &Form) -> Result<(), Error> {
+        let mut experiment = self.experiment.clone();
+        if form.candidates.is_some() && experiment.has_arm() {
+            // The schedule of a plan may do without what is stated of its candidates.
+            experiment.set_points.extend([0.0, PI].map(|angle| SetPoint::at_rest(0, angle)));
+        }
+        rests::add_awaited(&mut experiment, &self.rest_tables);
+        self.type_b = uncertainty::type_b(&self.file, &form.uncertainty, &experiment, &self.error_model, &self.speeds)?;
+        Ok(())
+    }
+
+    /// Everything but the set points and what `[uncertainty]` states.
     pub(crate) fn without_plateaus(file: &Path, folder: Folder, form: &Form) -> Result<Self, Error> {
         let has_arm = form.has_arm();
         if has_arm {
@@ -264,7 +278,7 @@ impl Session {
             unit_serial: form.unit.serial.clone(),
             station: centrifuge.map_or_else(String::new, |table| table.station.clone()),
             output_unit: OutputUnit::named(&form.unit.output_unit),
-            type_b: uncertainty::type_b(file, &form.uncertainty, &experiment, &error_model, &speeds)?,
+            type_b: TypeB::default(),
             speeds,
             experiment,
             error_model,

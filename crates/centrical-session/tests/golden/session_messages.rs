@@ -408,6 +408,24 @@ fn a_change_of_bias_needs_rests() {
     );
 }
 
+/// Of what is not there nothing is uncertain.
+#[test]
+fn an_uncertainty_needs_what_it_is_of() {
+    let refused = |from: &str, to: &str, stated: &str, expected: &str| {
+        let (key, found) = stated.split_once(" = ").unwrap();
+        let table = format!("rotation = \"+3\"\n\n[uncertainty]\n{stated}");
+        let text = spoiled(from, to).replacen("rotation = \"+3\"", &table, 1);
+        assert_eq!(message(text), format!("experiment.toml, [uncertainty], {key}: found {found}, expected {expected}"));
+    };
+    let bound = "no such bound: the model has the effect, or the experiment has nothing that it could act on";
+    refused("angle = \"180 deg\"", "angle = 0", "angle_tilt = \"1 mrad\"", bound);
+    refused("title", "title", "rests_scale = \"20 ppm\"", bound);
+    let latitude = "no such key without a latitude in [site]";
+    refused("latitude = \"55.7 deg\"", "", "latitude = \"1 mrad\"", latitude);
+    let tumbled = "\"2\"\nmatrix";
+    refused(tumbled, tumbled, "doubt = \"200 %\"", "a standard uncertainty, zero or more and not beyond reason");
+}
+
 #[test]
 fn positions_of_a_pair() {
     let collision = spoiled("pair = \"A\"\n", "").replace("pair = \"A\"", "pair = \"1\"");

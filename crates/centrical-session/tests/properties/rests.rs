@@ -285,6 +285,22 @@ fn planned_rests_are_no_measurement() {
     assert!(message.ends_with(expected), "{message}");
 }
 
+/// Rests that are read, and rests that are still to be read or found, may have a bound of their own.
+#[test]
+fn a_bound_of_rests_needs_rests() {
+    let folder = tempfile::tempdir().unwrap();
+    let record = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/tumble/record.csv");
+    let file = folder.path().join("experiment.toml");
+    let tumble = format!("record = \"{}\"\n[[tumble]]\nrecord = \"{0}\"\nswitch_on = \"later\"", record.display());
+    let stated = |bound: &str| alone(&tumble).replace("[unit]", &format!("{bound} = \"20 ppm\"\n[unit]"));
+    fs::write(&file, stated("rests_scale")).unwrap();
+    assert!(Session::read(folder.path()).is_ok(), "{:?}", Session::read(folder.path()).err());
+    assert!(Session::read_before_rests(folder.path()).is_ok());
+    fs::write(&file, stated("radius").replace("20 ppm", "20 um")).unwrap();
+    let message = Session::read(folder.path()).unwrap_err().to_string();
+    assert!(message.contains("radius: found \"20 um\", expected no such key without a [[mounting]]"), "{message}");
+}
+
 #[test]
 fn what_is_no_table_of_rests_is_refused() {
     let folder = tempfile::tempdir().unwrap();
