@@ -295,6 +295,7 @@ fn scenarios(file: &Path, form: &Form, session: &Session) -> Result<Vec<Scenario
     if !form.robust.extensions.is_empty() {
         let mut with = session.clone();
         with.extensions.extend(named_extensions(&at, &form.robust.extensions)?);
+        session.refuse_absent(&at, &with.extensions)?;
         scenarios.push(scenario(with.model()?, expected));
     }
     Ok(scenarios)

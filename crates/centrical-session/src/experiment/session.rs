@@ -215,6 +215,7 @@ impl Session {
         set_points: Vec<SetPoint>,
         reading_noise: Option<f64>,
     ) -> Result<MeasurementModel, Error> {
+        self.refuse_absent(&TomlPath::table(&self.file, "model"), &self.extensions)?;
         let experiment = Experiment { set_points, ..self.experiment.clone() };
         let reading_noise = reading_noise.unwrap_or(self.type_b.reading_noise);
         let stated = TypeB { reading_noise, ..self.type_b };
@@ -225,6 +226,21 @@ impl Session {
             return prior::with_priors(&self.file, model, &there);
         }
         prior::with_priors(&self.file, model, &self.priors)
+    }
+
+    /// Refuses an extension of a mounting, a set speed or a plateau that the session does not have. Rests to come bring plateaus.
+    pub(super) fn refuse_absent(&self, at: &TomlPath, extensions: &[Extension]) -> Result<(), Error> {
+        let is_awaited = self.rest_tables.iter().any(RestTable::is_awaited);
+        let may_come = |extension: &Extension| is_awaited && matches!(extension, Extension::Disturbance(_));
+        for extension in extensions.iter().filter(|extension| !may_come(extension)) {
+            let Some(numbers) = extension.numbers(&self.experiment) else { continue };
+            if extension.parameters(&self.experiment, &self.error_model).is_empty() {
+                let (first, last) = numbers.into_inner();
+                let expected = format!("a number from {first} to {last}, as the session has them");
+                return Err(at.unexpected("extensions", quoted(extension.name().as_bytes()), expected));
+            }
+        }
+        Ok(())
     }
 
     /// Takes what `[uncertainty]` states of the experiment, which has its set points and rests.

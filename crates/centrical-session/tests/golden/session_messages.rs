@@ -408,6 +408,26 @@ fn a_change_of_bias_needs_rests() {
     );
 }
 
+/// Two mountings with one speed and four plateaus.
+#[test]
+fn an_extension_needs_what_it_is_of() {
+    for (name, first, last) in [
+        ("bias-step[5]", 2, 4),
+        ("bias-step[1]", 2, 4),
+        ("one-speed[2]", 1, 1),
+        ("other-unit[3]", 1, 2),
+        ("one-mounting-turn[99]", 1, 2),
+    ] {
+        let with = format!("pair_relation = \"common\"\nextensions = [\"{name}\"]");
+        assert_eq!(
+            message(spoiled("pair_relation = \"common\"", &with)),
+            format!(
+                "experiment.toml, [model], extensions: found \"{name}\", expected a number from {first} to {last}, as the session has them"
+            )
+        );
+    }
+}
+
 /// Of what is not there nothing is uncertain.
 #[test]
 fn an_uncertainty_needs_what_it_is_of() {

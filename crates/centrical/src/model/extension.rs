@@ -3,6 +3,8 @@
 //! Where an effect belongs to a mounting, its unknowns are differences from the first mounting that shares the position (or
 //! the shift): the shared unknown itself remains, and no direction is lost by counting it twice.
 
+use std::ops::RangeInclusive;
+
 use centrical_compensate::Monomial;
 
 use super::course::{Course, Law};
@@ -165,6 +167,16 @@ impl Extension {
             return format!("{BIAS_STEP}[{}]", first + 1);
         }
         Self::NAMED.iter().find(|(_, extension)| *extension == self).map_or("", |(name, _)| name).to_owned()
+    }
+
+    /// The numbers, from 1, that one of a mounting on the arm, of a set speed or of a plateau can have in `experiment`.
+    pub fn numbers(self, experiment: &Experiment) -> Option<RangeInclusive<usize>> {
+        match self {
+            Self::OneMounting(..) => Some(1..=experiment.mountings_on_arm().count()),
+            Self::OneSpeed(_) => Some(1..=experiment.set_speeds().len()),
+            Self::Disturbance(Course::From(_)) => Some(2..=experiment.set_points.len()),
+            _ => None,
+        }
     }
 
     /// Its unknowns in `experiment` beside an error model; none where the experiment has nothing that it could act on.
