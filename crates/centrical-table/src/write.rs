@@ -4,6 +4,7 @@ mod csv;
 mod decimal;
 mod file;
 mod folder;
+mod format;
 mod output;
 mod outputs;
 mod parquet;
@@ -20,6 +21,8 @@ pub use self::decimal::Decimals;
 use self::file::Beside;
 pub use self::file::{abandon_files, write_stream, write_whole};
 pub use self::folder::{ClaimedFolder, claim_folder, create_folder};
+use self::format::not_written;
+pub use self::format::{TableFormat, is_ending_of_table};
 use self::output::SteadyFile;
 pub use self::outputs::{Outputs, refuse_inputs};
 use self::parquet::{Layout, ParquetTable};
@@ -27,39 +30,6 @@ use self::row_groups::RowGroups;
 pub use self::typed::TypedWriter;
 use crate::error::{Error, Place};
 use crate::stamp::Stamps;
-
-/// How a table is written.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum TableFormat {
-    /// Text.
-    #[default]
-    Csv,
-    /// Parquet.
-    Parquet,
-}
-
-impl TableFormat {
-    /// The format that the name of a file asks for: Parquet where it ends in `.parquet` or `.pq`, otherwise text.
-    pub fn of(file: &Path) -> Self {
-        if ends_in(file, &["parquet", "pq"]) { Self::Parquet } else { Self::Csv }
-    }
-
-    /// How names of such files end.
-    pub fn extension(self) -> &'static str {
-        match self {
-            Self::Csv => "csv",
-            Self::Parquet => "parquet",
-        }
-    }
-}
-
-/// Endings of formats that are read, and not written: text under such a name would deceive.
-const READ_ALONE: [&str; 13] =
-    ["gz", "zst", "xlsx", "xls", "ods", "arrow", "feather", "npy", "npz", "mat", "h5", "hdf5", "tdms"];
-
-fn ends_in(file: &Path, endings: &[&str]) -> bool {
-    file.extension().is_some_and(|own| endings.iter().any(|ending| own.eq_ignore_ascii_case(ending)))
-}
 
 /// Writes a long table beside the file, piece by piece, and renames at the end: whoever looks sees the whole table or none.
 /// It is on the disk then. Numbers read back as they were unless they are rounded; NaN is written as such.
@@ -122,9 +92,9 @@ impl<const N: usize> TableWriter<N> {
 impl OpenTable {
     fn create(file: &Path, names: &[&str], decimals: &[Decimals]) -> Result<Self, Error> {
         let failed = |error| Error::writing(file, error);
-        if ends_in(file, &READ_ALONE) {
-            let expected = "a name that ends in .csv, or in .parquet";
-            return Err(Error::content(file, Place::Whole, "the name of a format that is not written", expected));
+        if let Some(name) = not_written(file) {
+            let found = format!("the name of a format that is not written ({name})");
+            return Err(Error::content(file, Place::Whole, found, "a name that ends in .csv, or in .parquet"));
         }
         let (beside, output) = Beside::create(file).map_err(failed)?;
         let output = SteadyFile::new(output).map_err(failed)?;

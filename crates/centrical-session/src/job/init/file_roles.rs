@@ -6,7 +6,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use centrical_table::{
-    ColumnName, Extent, Field, Rule, TableReader, TextForm, binary_columns, text_form, unit_beside_name,
+    ColumnName, Extent, Field, Rule, TableReader, TextForm, binary_columns, is_ending_of_table, text_form,
+    unit_beside_name,
 };
 
 use super::column_names::{Label, What, sort_by_axis, what};
@@ -14,12 +15,6 @@ use crate::error::Error;
 
 /// Folders are searched to this depth.
 const DEPTH: usize = 3;
-
-/// Endings of files that may hold records.
-const ENDINGS: [&str; 19] = [
-    "csv", "tsv", "txt", "dat", "asc", "lvm", "log", "gz", "zst", "parquet", "pq", "arrow", "feather", "npy", "npz",
-    "mat", "h5", "hdf5", "tdms",
-];
 
 /// The files of one mounting.
 #[derive(Debug, Clone)]
@@ -137,7 +132,7 @@ fn collect(path: &Path, depth: usize, is_named: bool, paths: &mut Vec<PathBuf>) 
     let metadata = fs::metadata(path).map_err(failed)?;
     if !metadata.is_dir() {
         let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase()).unwrap_or_default();
-        if is_named || metadata.is_file() && ENDINGS.contains(&ending.as_str()) {
+        if is_named || metadata.is_file() && is_ending_of_table(&ending) {
             paths.push(path.to_owned());
         }
         return Ok(());
