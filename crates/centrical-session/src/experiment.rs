@@ -41,7 +41,7 @@ pub(crate) use self::rests::{KnownAttitudes, RecordedRests, RestSource, RestTabl
 pub(crate) use self::session::EXPERIMENT_FILE;
 pub use self::session::{MountingFiles, Session};
 pub use self::session_files::refuse_inputs;
-pub(crate) use self::session_files::{refuse_another_session, refuse_session};
+pub(crate) use self::session_files::{refuse_another_session, refuse_other_inputs, refuse_session};
 pub use self::speeds::{Measured, SpeedSource, Speeds};
 pub use self::stated_attitudes::StatedAttitudes;
 pub(crate) use self::stated_attitudes::write_attitudes;

@@ -71,6 +71,12 @@ impl Session {
         files.map(|file| self.folder.length(file)).sum()
     }
 
+    /// Whether it has records or means, and is no plan.
+    fn has_readings(&self) -> bool {
+        let has_rests = self.rest_tables.iter().any(|table| !table.is_planned());
+        self.record_bytes() > 0 || self.plateaus.is_some() || has_rests
+    }
+
     /// All files of the session in the order they are named: the experiment file first.
     pub fn files(&self) -> Vec<&Path> {
         let of_mountings = self.mountings.iter().flat_map(|m| m.records.iter().chain(&m.telemetry).chain(&m.pulses));
@@ -105,24 +111,55 @@ impl Session {
 /// Folders above an output in which a session may lie that reads a file there.
 const ABOVE: usize = 3;
 
-/// Refuses outputs over one of `inputs`, or over a file of a session whose records are there: nothing restores them.
+/// What may stand beside an experiment file and belong to it.
+const BESIDE: [&str; 4] = [EXPERIMENT_FILE, "truth.json", "truth.toml", "laboratory.toml"];
+
+/// Refuses outputs over one of `inputs`, or over a file of a session that has readings, or cannot be read: nothing restores them.
 ///
 /// # Errors
 /// [`Error`] with the output.
 pub fn refuse_inputs(outputs: &[PathBuf], inputs: &[impl AsRef<Path>]) -> Result<(), Error> {
+    refuse_but_in(None, outputs, inputs)
+}
+
+/// The same, but for the session in `folder`, which may be replaced.
+///
+/// # Errors
+/// As [`refuse_inputs`].
+pub(crate) fn refuse_other_inputs(
+    folder: &Path,
+    outputs: &[PathBuf],
+    inputs: &[impl AsRef<Path>],
+) -> Result<(), Error> {
+    refuse_but_in(Some(&whole(folder)), outputs, inputs)
+}
+
+fn refuse_but_in(own: Option<&Path>, outputs: &[PathBuf], inputs: &[impl AsRef<Path>]) -> Result<(), Error> {
     centrical_table::refuse_inputs(outputs, inputs)?;
     for output in outputs.iter().filter(|output| output.is_file()) {
-        let whole = std::path::absolute(output).unwrap_or_else(|_| output.clone());
-        for folder in whole.ancestors().skip(1).take(ABOVE).filter(|folder| folder.join(EXPERIMENT_FILE).is_file()) {
-            let session = Session::read_before_rests(folder).ok().filter(|session| session.record_bytes() > 0);
-            let files = session.iter().flat_map(Session::files).collect::<Vec<_>>();
-            if centrical_table::refuse_inputs(std::slice::from_ref(output), &files).is_err() {
+        let may_hold = |folder: &&Path| Some(*folder) != own && folder.join(EXPERIMENT_FILE).is_file();
+        for folder in whole(output).ancestors().skip(1).take(ABOVE).filter(may_hold) {
+            if centrical_table::refuse_inputs(std::slice::from_ref(output), &irreplaceable(folder)).is_err() {
                 let found = format!("a file of the session in {}", folder.display());
                 return Err(Error::content(output, Place::Whole, found, "another file for the output"));
             }
         }
     }
     Ok(())
+}
+
+fn whole(path: &Path) -> PathBuf {
+    std::path::absolute(path).unwrap_or_else(|_| path.to_owned())
+}
+
+/// The files of the session in `folder`, if it has readings; of one that cannot be read those beside its experiment file.
+fn irreplaceable(folder: &Path) -> Vec<PathBuf> {
+    let session = Session::read_before_rests(folder).ok();
+    if session.as_ref().is_some_and(|session| !session.has_readings()) {
+        return Vec::new();
+    }
+    let files = session.iter().flat_map(Session::files).map(Path::to_owned);
+    files.chain(BESIDE.map(|name| folder.join(name))).collect()
 }
 
 /// Refuses a folder that holds a session.
@@ -161,4 +198,50 @@ fn is_of_means(session: &Session) -> bool {
 fn is_of_unit<'s>(session: &'s Session, other: &'s Session) -> bool {
     let unit = |session: &'s Session| [session.unit_model.as_str(), session.unit_serial.as_str()];
     unit(session) == ["", ""] || unit(session) == unit(other)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Rests alone in a table; `gravity` can be spoilt.
+    const MEANS: &str = r#"
+[session]
+title = ""
+date = ""
+[site]
+gravity = "9.81523 m/s^2"
+[unit]
+output_unit = "m/s^2"
+[model]
+error_model = ["df_1", "G0_11"]
+[[tumble]]
+rests = "rests.csv"
+"#;
+
+    #[test]
+    fn what_cannot_be_made_again_is_not_written_over() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = |name: &str| folder.path().join(name);
+        for name in ["rests.csv", "truth.json", "laboratory.toml", "other.csv"] {
+            std::fs::write(file(name), "1").unwrap();
+        }
+        let nothing: [&Path; 0] = [];
+        let is_refused = |name: &str| refuse_inputs(&[file(name)], &nothing).is_err();
+        std::fs::write(file(EXPERIMENT_FILE), MEANS).unwrap();
+        assert!(Session::read_before_rests(folder.path()).is_ok(), "{:?}", Session::read_before_rests(folder.path()));
+        let of_session = [EXPERIMENT_FILE, "truth.json", "laboratory.toml"];
+        assert!(of_session.iter().chain(&["rests.csv"]).all(|name| is_refused(name)) && !is_refused("other.csv"));
+        assert!(refuse_other_inputs(folder.path(), &[file("rests.csv")], &nothing).is_ok());
+        std::fs::write(file(EXPERIMENT_FILE), MEANS.replace("gravity", "gravty")).unwrap();
+        assert!(of_session.iter().all(|name| is_refused(name)) && !is_refused("other.csv"));
+        // A plan can be made again.
+        std::fs::write(
+            file(EXPERIMENT_FILE),
+            MEANS.replace("rests = \"rests.csv\"", "attitudes = \"cube\"\nattitude_uncertainty = \"1 mrad\""),
+        )
+        .unwrap();
+        assert!(Session::read_before_rests(folder.path()).is_ok(), "{:?}", Session::read_before_rests(folder.path()));
+        assert!(!is_refused(EXPERIMENT_FILE));
+    }
 }

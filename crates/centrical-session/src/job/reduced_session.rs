@@ -3,15 +3,15 @@
 use std::path::{Path, PathBuf};
 
 use centrical::OnProgress;
-use centrical_table::{TableFormat, claim_folder, refuse_inputs, write_whole};
+use centrical_table::{TableFormat, claim_folder, write_whole};
 use toml_edit::{DocumentMut, InlineTable, Item, TableLike, value};
 
 use super::calibrate::calibrate_reduced;
 use crate::document::{CalibrationResult, Method, RecordFindings};
 use crate::error::{Error, ErrorKind, Place};
 use crate::experiment::{
-    EXPERIMENT_FILE, PlateauRow, RestTable, Session, SpeedSource, refuse_another_session, write_attitudes,
-    write_plateaus, write_plateaus_parquet,
+    EXPERIMENT_FILE, PlateauRow, RestTable, Session, SpeedSource, refuse_another_session, refuse_other_inputs,
+    write_attitudes, write_plateaus, write_plateaus_parquet,
 };
 use crate::reduced::Reduced;
 use crate::settings::{editable, tables_of};
@@ -51,7 +51,7 @@ pub fn write_reduced(
         (0..session.rest_tables.len()).map(|n| rest_files(n).map(|name| folder.join(name))).collect();
     let outputs: Vec<PathBuf> =
         rests.iter().flatten().cloned().chain([experiment_file.clone(), folder.join(name)]).collect();
-    refuse_inputs(&outputs, &session.files())?;
+    refuse_other_inputs(folder, &outputs, &session.files())?;
     let rows = reduced.table(session);
     // Speeds that single plateaus of the schedule state as measured: the table has a column for them.
     let of_plateaus = session.speeds.measured.is_none() && rows.iter().any(|row| row.speed_uncertainty.is_some());

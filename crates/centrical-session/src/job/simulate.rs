@@ -5,13 +5,15 @@ use std::path::Path;
 
 use centrical::simulate::{Records, SimulatedMounting, Simulation};
 use centrical::{OnProgress, advance};
-use centrical_table::{ColumnName, TableFormat, claim_folder, create_folder, refuse_inputs, write_table, write_whole};
+use centrical_table::{ColumnName, TableFormat, claim_folder, create_folder, write_table, write_whole};
 use rayon::prelude::*;
 use toml_edit::{Item, TableLike, value};
 
 use crate::document::{Written, WrittenSession, WrittenTumble, truth_json};
 use crate::error::{Error, Place};
-use crate::experiment::{EXPERIMENT_FILE, OutputUnit, RestTable, Session, refuse_session, write_attitudes};
+use crate::experiment::{
+    EXPERIMENT_FILE, OutputUnit, RestTable, Session, refuse_inputs, refuse_session, write_attitudes,
+};
 use crate::record::Column;
 use crate::settings::{editable, read_settings, tables_of};
 use crate::truth::Truth;

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use centrical::reduction::{CoarseScale, Record, Rests};
 use centrical::{OnProgress, STANDARD_GRAVITY, advance};
-use centrical_table::{ColumnName, TableLines, refuse_inputs, unit_of_word, write_whole};
+use centrical_table::{ColumnName, TableLines, unit_of_word, write_whole};
 use nalgebra::Vector3;
 
 use super::calibrate::calibrate_reduced;
@@ -15,7 +15,7 @@ use crate::document::{CalibrationResult, Method};
 use crate::error::{Error, Place};
 use crate::experiment::{
     ASKEW, EXPERIMENT_FILE, FileMarks, Folder, MOST_DISTANT, RAW_OUTPUT, RestSource, Session, StatedAttitudes, Turning,
-    misalignments_left_out, refuse_another_session, write_attitudes, write_plateaus,
+    misalignments_left_out, refuse_another_session, refuse_other_inputs, write_attitudes, write_plateaus,
 };
 use crate::quantity::{Date, NotThatQuantity, Quantity};
 use crate::record::{EqualColumns, Input, RECORD, Scale, named_columns};
@@ -189,7 +189,7 @@ impl Tumble {
         refuse_another_session(folder, &self.session)?;
         let names = [TABLE, ATTITUDES, EXPERIMENT_FILE, "result.json"];
         let outputs @ [table, attitudes, experiment, result] = &names.map(|name| folder.join(name));
-        refuse_inputs(outputs, &request.inputs().collect::<Vec<_>>())?;
+        refuse_other_inputs(folder, outputs, &request.inputs().collect::<Vec<_>>())?;
         write_plateaus(table, &rest_rows(&self.reduced.plateaus))?;
         for known in self.session.rest_tables.iter().filter_map(|table| table.attitudes.as_ref()) {
             write_attitudes(attitudes, &known.up_b)?;

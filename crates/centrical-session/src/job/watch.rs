@@ -10,13 +10,13 @@ mod rests;
 
 use std::sync::atomic::AtomicBool;
 
-use centrical_table::{claim_folder, refuse_inputs};
+use centrical_table::claim_folder;
 
 pub use self::arrivals::Watch;
 pub use self::board::WatchProgress;
 pub use self::request::{WatchEnd, WatchEvent, WatchRequest};
 use crate::error::Error;
-use crate::experiment::Session;
+use crate::experiment::{Session, refuse_inputs};
 
 /// Files that a watch writes into its folder; the plot is drawn by who hears the events.
 const OUTPUTS: [&str; 5] = ["watch.json", "watch-history.jsonl", "watch-history.svg", "watch-live.json", "result.json"];
