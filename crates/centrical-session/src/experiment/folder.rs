@@ -89,8 +89,11 @@ impl Folder {
 }
 
 impl std::fmt::Debug for Folder {
-    /// Without the bytes.
+    /// Without the bytes and marks.
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Folder").field("path", &self.path).field("in_memory", &self.in_memory.keys()).finish()
+        f.debug_struct("Folder")
+            .field("path", &self.path)
+            .field("in_memory", &self.in_memory.keys())
+            .finish_non_exhaustive()
     }
 }

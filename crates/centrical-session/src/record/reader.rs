@@ -153,7 +153,9 @@ impl RecordReader {
         }
         let batch = self.scales.apply_to(self.table.batch());
         if let Some(span) = &mut self.span {
-            batch.iter().for_each(|rows| span.see(&rows[0]));
+            for rows in &*batch {
+                span.see(&rows[0]);
+            }
         }
         Ok(Some(batch))
     }
