@@ -36,12 +36,12 @@ mod scenarios;
 mod search;
 
 pub use candidates::{Candidates, Costs, Noise, Scenario, Schedule, Visit};
-pub use criterion::{Criterion, Goal, ReadingRange, Robustness};
+pub use criterion::{Criterion, Goal, Robustness};
 pub use error::PlanError;
-pub use goals::{Reached, Task};
-pub use next::{Benefit, NextPlateau};
+pub use goals::Task;
+pub use next::NextPlateau;
 pub use normalised::Normalised;
 pub use prediction::Prediction;
-pub use rationale::{Rationale, VisitReason};
+pub use rationale::Rationale;
 pub use relaxation::Relaxed;
 pub use search::{Effort, Plan};

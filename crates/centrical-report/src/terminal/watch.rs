@@ -41,7 +41,7 @@ pub fn watch_table(view: &WatchProgress, targets: &Targets, all_alarms: bool) ->
     screen.table(table);
     if !view.best.is_empty() {
         let shown: Vec<String> =
-            view.best.iter().map(|gain| format!("{} (x {:.3})", label(gain.set_point), gain.factor)).collect();
+            view.best.iter().map(|&(set_point, factor)| format!("{} (x {factor:.3})", label(set_point))).collect();
         screen.head("BEST NEXT", &format!("for the compensated reading's mean uncertainty: {}", shown.join("; ")));
     }
     if !targets.is_empty() && groups.iter().all(|group| group.is_met != Some(false)) {

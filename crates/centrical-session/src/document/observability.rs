@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use centrical::observability::{Condition, CorrelatedGroup, Need, Reason, Remedy};
-use centrical::plan::{Prediction, ReadingRange};
+use centrical::plan::Prediction;
 use centrical::{Combination, Experiment, Group, MeasurementModel, Study, Weight};
 use serde::Serialize;
 use serde_json::{Map, Value};
@@ -40,8 +40,7 @@ impl Subject {
     fn prediction(&self) -> Result<PredictionReport, Error> {
         let prediction = Prediction::of(&self.model, &self.weights, &self.nominal)
             .map_err(|source| Error::fit(&self.file, source))?;
-        let force = largest_force(self.model.experiment());
-        PredictionReport::of(&prediction, ReadingRange { force }, PredictionReport::COVERAGE)
+        PredictionReport::of(&prediction, largest_force(self.model.experiment()), PredictionReport::COVERAGE)
             .map_err(|source| Error::fit(&self.file, source))
     }
 

@@ -1,6 +1,6 @@
 //! What a plan will know, as data for documents.
 
-use centrical::plan::{Prediction, ReadingRange};
+use centrical::plan::Prediction;
 use centrical::{FitError, Group};
 use serde::Serialize;
 
@@ -61,7 +61,7 @@ impl PredictionReport {
     ///
     /// # Errors
     /// [`FitError`] when numbers overflow.
-    pub fn of(prediction: &Prediction, range: ReadingRange, coverage: f64) -> Result<Self, FitError> {
+    pub fn of(prediction: &Prediction, range: f64, coverage: f64) -> Result<Self, FitError> {
         let budget = prediction.budget();
         let parameters = prediction.model().parameters();
         let parameter = |j: usize| {
@@ -79,7 +79,7 @@ impl PredictionReport {
             }
         };
         // The curve is symmetric but for rounding: the half from 0 on is shown.
-        let curves = prediction.curves(range.force, 2 * POINTS - 1).map_or_else(Vec::new, |[a, b, c]| {
+        let curves = prediction.curves(range, 2 * POINTS - 1).map_or_else(Vec::new, |[a, b, c]| {
             let rows = a.iter().zip(&b).zip(&c).skip(POINTS - 1);
             rows.map(|((a, b), c)| [a.force, a.along, b.along, c.along]).collect()
         });
@@ -87,7 +87,7 @@ impl PredictionReport {
             coverage,
             sources: budget.contributions().iter().map(|c| c.source.name()).collect(),
             parameters: (0..parameters.len()).map(parameter).collect(),
-            range: range.force,
+            range,
             reading: prediction.reading(range),
             curves,
             rests_on: RestsOn::all(prediction.model(), prediction.rests_on()?),

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use centrical::plan::{Candidates, Costs, Criterion, Goal, Noise, PlanError, ReadingRange, Robustness, Scenario, Task};
+use centrical::plan::{Candidates, Costs, Criterion, Goal, Noise, PlanError, Robustness, Scenario, Task};
 use centrical::{Experiment, MeasurementModel, STANDARD_GRAVITY, SetPoint};
 
 use super::folder::Folder;
@@ -39,8 +39,8 @@ pub struct Planning {
     pub title: String,
     /// What can be chosen, what is made small, and within what time.
     pub task: Task,
-    /// Over what a compensated reading is judged.
-    pub range: ReadingRange,
+    /// Largest specific force over which a compensated reading is judged [m/s^2].
+    pub range: f64,
     /// The rests beside the arm that can be chosen: the last of the candidates, in this order.
     pub(crate) rests: Option<RestTable>,
     /// The earlier result that `[plan]` names.
@@ -314,16 +314,15 @@ fn robustness(file: &Path, form: &Form) -> Result<Robustness, Error> {
 }
 
 /// Criterion, time and range; without a time the criterion is that of the goals.
-fn target(file: &Path, form: &Form, model: &MeasurementModel) -> Result<(Criterion, Option<f64>, ReadingRange), Error> {
+fn target(file: &Path, form: &Form, model: &MeasurementModel) -> Result<(Criterion, Option<f64>, f64), Error> {
     let at = TomlPath::table(file, "target");
     let table = &form.target;
     let time = table.time.as_ref().map(|q| at.bounded("time", q, Dimension::Time, AVAILABLE, AVAILABLE_TIME));
     let time = time.transpose()?;
     let usual = if model.experiment().has_arm() { USUAL_RANGE } else { STANDARD_GRAVITY };
-    let force = table.range.as_ref().map_or(Ok(usual), |q| {
+    let range = table.range.as_ref().map_or(Ok(usual), |q| {
         at.bounded("range", q, Dimension::Acceleration, (1e-3, 1e7), "a specific force from 1e-3 to 1e7 m/s^2")
     })?;
-    let range = ReadingRange { force };
     let goals = goals(file, form, model, range)?;
     let name = table.criterion.as_deref().unwrap_or(if goals.is_empty() { "I" } else { "worst" });
     if ["I", "A", "D"].contains(&name) && !goals.is_empty() {
@@ -353,7 +352,7 @@ fn target(file: &Path, form: &Form, model: &MeasurementModel) -> Result<(Criteri
     }
 }
 
-fn goals(file: &Path, form: &Form, model: &MeasurementModel, range: ReadingRange) -> Result<Vec<Goal>, Error> {
+fn goals(file: &Path, form: &Form, model: &MeasurementModel, range: f64) -> Result<Vec<Goal>, Error> {
     let at = TomlPath::table(file, "target.uncertainty");
     let mut goals = Vec::new();
     for (name, quantity) in &form.target.uncertainty {

@@ -17,8 +17,9 @@ pub enum Criterion {
     Determinant,
     /// A: mean of `(u / typical)^2` over the parameters of the instrument.
     Average,
-    /// I: mean variance of the compensated reading over the range [m^2/s^4].
-    Reading(ReadingRange),
+    /// I: mean variance of the compensated reading over forces up to this one [m/s^2]: magnitudes uniform from 0, all directions alike,
+    /// mean of the three components.
+    Reading(f64),
     /// The worst `(u / wanted)^2` over goals: 1 when all are just met.
     Worst(Vec<Goal>),
 }
@@ -34,14 +35,6 @@ pub enum Robustness {
     Worst,
 }
 
-/// Over what forces a compensated reading is judged: magnitudes uniform from 0 to `force`, all directions alike, mean of
-/// the three components.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ReadingRange {
-    /// Largest magnitude of the specific force [m/s^2].
-    pub force: f64,
-}
-
 /// One wanted standard uncertainty.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Goal {
@@ -52,10 +45,10 @@ pub enum Goal {
         /// Wanted standard uncertainty [its unit].
         uncertainty: f64,
     },
-    /// Of the compensated reading: root mean variance over the range.
+    /// Of the compensated reading: root mean variance, as in [`Criterion::Reading`].
     Reading {
-        /// The range.
-        range: ReadingRange,
+        /// Largest magnitude of the specific force [m/s^2].
+        range: f64,
         /// Wanted standard uncertainty [m/s^2].
         uncertainty: f64,
     },
@@ -117,7 +110,7 @@ impl Criterion {
                 Ok(Columns { k, goal: vec![0; count], is_determinant: false })
             }
             Self::Reading(range) => {
-                let k = range.columns(model);
+                let k = reading_columns(model, *range);
                 Ok(Columns { goal: vec![0; k.ncols()], k, is_determinant: false })
             }
             Self::Worst(goals) => worst(goals, model),
@@ -141,7 +134,7 @@ fn worst(goals: &[Goal], model: &MeasurementModel) -> Result<Columns, PlanError>
                 goal.push(n);
             }
             Goal::Reading { range, uncertainty } => {
-                for column in range.columns(model).column_iter() {
+                for column in reading_columns(model, *range).column_iter() {
                     columns.push(column / *uncertainty);
                     goal.push(n);
                 }
@@ -151,50 +144,49 @@ fn worst(goals: &[Goal], model: &MeasurementModel) -> Result<Columns, PlanError>
     Ok(Columns { k: DMatrix::from_columns(&columns), goal, is_determinant: false })
 }
 
-impl ReadingRange {
-    /// `K` with `tr(K^T C K)` the mean variance of the compensated reading: at no errors `df = -sum_t dc_t m_t(f) e_axis`
-    /// [K4.1], averaged over the forces by cubature.
-    fn columns(self, model: &MeasurementModel) -> DMatrix<f64> {
-        let terms = &model.error_model().terms;
-        let nodes = self.nodes();
-        let mut rows = DMatrix::zeros(3 * nodes.len(), terms.len());
-        for (n, (force, weight)) in nodes.iter().enumerate() {
-            for (t, term) in terms.iter().enumerate() {
-                rows[(3 * n + term.axis, t)] = term.monomial.value((*force).into()) * (weight / 3.0).sqrt();
-            }
-        }
-        // The triangle has the same squares in as many rows as there are terms.
-        let triangle = rows.qr().r();
-        let mut k = DMatrix::zeros(model.parameters().len(), triangle.nrows());
-        k.rows_mut(model.parameters().first_term(), terms.len()).copy_from(&triangle.transpose());
-        k
-    }
-
-    /// Forces and their weights, which sum to 1: the 26 directions of Lebedev's rule of degree 7, at the four magnitudes
-    /// of the Gauss-Legendre rule of degree 7. Exact for squares of cubic polynomials in both.
-    pub(super) fn nodes(self) -> Vec<(Vector3<f64>, f64)> {
-        const LEGENDRE: [(f64, f64); 4] = [
-            (0.069_431_844_202_973_71, 0.173_927_422_568_726_93),
-            (0.330_009_478_207_571_87, 0.326_072_577_431_273_07),
-            (0.669_990_521_792_428_1, 0.326_072_577_431_273_07),
-            (0.930_568_155_797_026_3, 0.173_927_422_568_726_93),
-        ];
-        let mut nodes = Vec::with_capacity(104);
-        for (direction, weight) in lebedev_26() {
-            for (part, share) in LEGENDRE {
-                nodes.push((direction * (part * self.force), weight * share));
-            }
-        }
-        nodes
-    }
-
-    /// Root of the mean variance of the compensated reading [m/s^2] that `covariance` of the coefficients, in the order of
-    /// the terms, leaves.
-    pub fn standard_uncertainty(self, model: &MeasurementModel, covariance: &DMatrix<f64>) -> f64 {
-        let first = model.parameters().first_term();
-        let k = self.columns(model).rows(first, covariance.nrows()).into_owned();
+impl MeasurementModel {
+    /// Root of the mean variance of the compensated reading [m/s^2], over forces up to `range` as in [`Criterion::Reading`], that `covariance`
+    /// of the coefficients, in the order of the terms, leaves.
+    pub fn reading_uncertainty(&self, range: f64, covariance: &DMatrix<f64>) -> f64 {
+        let k = reading_columns(self, range).rows(self.parameters().first_term(), covariance.nrows()).into_owned();
         (k.transpose() * covariance * k).trace().max(0.0).sqrt()
     }
+}
+
+/// `K` with `tr(K^T C K)` the mean variance of the compensated reading: at no errors `df = -sum_t dc_t m_t(f) e_axis`
+/// [K4.1], averaged over the forces by cubature.
+fn reading_columns(model: &MeasurementModel, range: f64) -> DMatrix<f64> {
+    let terms = &model.error_model().terms;
+    let nodes = forces(range);
+    let mut rows = DMatrix::zeros(3 * nodes.len(), terms.len());
+    for (n, (force, weight)) in nodes.iter().enumerate() {
+        for (t, term) in terms.iter().enumerate() {
+            rows[(3 * n + term.axis, t)] = term.monomial.value((*force).into()) * (weight / 3.0).sqrt();
+        }
+    }
+    // The triangle has the same squares in as many rows as there are terms.
+    let triangle = rows.qr().r();
+    let mut k = DMatrix::zeros(model.parameters().len(), triangle.nrows());
+    k.rows_mut(model.parameters().first_term(), terms.len()).copy_from(&triangle.transpose());
+    k
+}
+
+/// Forces up to `range` and their weights, which sum to 1: the 26 directions of Lebedev's rule of degree 7, at the four magnitudes
+/// of the Gauss-Legendre rule of degree 7. Exact for squares of cubic polynomials in both.
+pub(super) fn forces(range: f64) -> Vec<(Vector3<f64>, f64)> {
+    const LEGENDRE: [(f64, f64); 4] = [
+        (0.069_431_844_202_973_71, 0.173_927_422_568_726_93),
+        (0.330_009_478_207_571_87, 0.326_072_577_431_273_07),
+        (0.669_990_521_792_428_1, 0.326_072_577_431_273_07),
+        (0.930_568_155_797_026_3, 0.173_927_422_568_726_93),
+    ];
+    let mut nodes = Vec::with_capacity(104);
+    for (direction, weight) in lebedev_26() {
+        for (part, share) in LEGENDRE {
+            nodes.push((direction * (part * range), weight * share));
+        }
+    }
+    nodes
 }
 
 /// Lebedev's rule of 26 points: vertices, edges and faces of the cube (V. I. Lebedev, 1976).

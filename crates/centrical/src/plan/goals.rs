@@ -24,34 +24,6 @@ pub struct Task {
     pub time: Option<f64>,
 }
 
-/// A goal as a schedule is predicted to reach it; `None` where it is not determined.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Reached {
-    /// Standard uncertainty by noise, speeds and priors.
-    pub type_a: Option<f64>,
-    /// By the stated type B, which no plan lowers by much.
-    pub type_b: Option<f64>,
-    /// Combined standard uncertainty.
-    pub combined: Option<f64>,
-}
-
-impl Reached {
-    fn new(prediction: &Prediction, goal: &Goal) -> Self {
-        let [type_a, combined] = match goal {
-            Goal::Parameter { name, .. } => {
-                let j = prediction.model().parameters().find(name);
-                [j.and_then(|j| prediction.type_a(j)), j.and_then(|j| prediction.standard_uncertainty(j))]
-            }
-            Goal::Reading { range, .. } => {
-                let reading = prediction.reading(*range);
-                [reading.map(|[a, _]| a), reading.map(|[_, all]| all)]
-            }
-        };
-        let rest = |(all, a): (f64, f64)| (all * all - a * a).max(0.0).sqrt();
-        Self { type_a, type_b: combined.zip(type_a).map(rest), combined }
-    }
-}
-
 impl Task {
     /// The best plan for the time, or the shortest for the goals; `certify`: searched until every set of mountings is decided
     /// on.
@@ -104,9 +76,24 @@ impl Task {
         Prediction::of(&model, &weights, &nominal)
     }
 
-    /// The goals as a prediction reaches them.
-    pub fn reached(&self, prediction: &Prediction) -> Vec<Reached> {
-        self.goals().iter().map(|goal| Reached::new(prediction, goal)).collect()
+    /// The goals as a prediction reaches them: standard uncertainty by noise, speeds and priors (type A), by the stated type B, which no plan
+    /// lowers by much, and combined; `None` where it is not determined.
+    pub fn reached(&self, prediction: &Prediction) -> Vec<[Option<f64>; 3]> {
+        let reached = |goal: &Goal| {
+            let [type_a, combined] = match goal {
+                Goal::Parameter { name, .. } => {
+                    let j = prediction.model().parameters().find(name);
+                    [j.and_then(|j| prediction.type_a(j)), j.and_then(|j| prediction.standard_uncertainty(j))]
+                }
+                Goal::Reading { range, .. } => {
+                    let reading = prediction.reading(*range);
+                    [reading.map(|[a, _]| a), reading.map(|[_, all]| all)]
+                }
+            };
+            let rest = |(all, a): (f64, f64)| (all * all - a * a).max(0.0).sqrt();
+            [type_a, combined.zip(type_a).map(rest), combined]
+        };
+        self.goals().iter().map(reached).collect()
     }
 
     fn effort(&self, certify: bool) -> Effort {
@@ -122,7 +109,8 @@ impl Task {
     /// Whether every goal is met as predicted, type B included.
     fn meets_goals(&self, plan: &Plan) -> Result<bool, PlanError> {
         let reached = self.reached(&self.predict(&plan.schedule)?);
-        let is_met = |(goal, reached): (&Goal, Reached)| reached.combined.is_some_and(|u| u <= goal.uncertainty());
+        let is_met =
+            |(goal, [_, _, combined]): (&Goal, [Option<f64>; 3])| combined.is_some_and(|u| u <= goal.uncertainty());
         Ok(self.goals().iter().zip(reached).all(is_met))
     }
 
@@ -136,8 +124,8 @@ impl Task {
     /// A goal below what type B leaves of it with every candidate as often and as long as possible cannot be reached.
     fn check_type_b(&self) -> Result<(), PlanError> {
         let reached = self.reached(&self.predict(&self.everything())?);
-        for (goal, reached) in self.goals().iter().zip(reached) {
-            let factor = reached.type_b.unwrap_or(0.0) / goal.uncertainty();
+        for (goal, [_, type_b, _]) in self.goals().iter().zip(reached) {
+            let factor = type_b.unwrap_or(0.0) / goal.uncertainty();
             if factor >= 1.0 {
                 return Err(PlanError::BelowTypeB { name: goal.name().to_owned(), factor });
             }

@@ -7,15 +7,6 @@ use super::error::PlanError;
 use super::information::{LinearisedScenario, precision};
 use crate::model::{MeasurementModel, Weight};
 
-/// How much the next plateau would improve the criterion.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Benefit {
-    /// The plateau, by its index in [`crate::Experiment::set_points`].
-    pub set_point: usize,
-    /// The criterion after it over that before, as an uncertainty: below 1.
-    pub factor: f64,
-}
-
 /// What a next plateau would bring after those that have been taken up. Unknowns that are not determined yet are held by
 /// ten typical magnitudes, so that a plateau that determines a new one comes before one that repeats.
 #[derive(Debug, Clone)]
@@ -50,20 +41,20 @@ impl<'m> NextPlateau<'m> {
         Ok(())
     }
 
-    /// The benefit of each of `candidates`, the best first.
+    /// Set point of each of `candidates`, with its benefit: the criterion after it over that before, as an uncertainty, below 1. The best first.
     ///
     /// # Errors
     /// [`PlanError`] when a weight is invalid.
-    pub fn benefits(&self, candidates: &[Weight]) -> Result<Vec<Benefit>, PlanError> {
+    pub fn benefits(&self, candidates: &[Weight]) -> Result<Vec<(usize, f64)>, PlanError> {
         let factor = self.scenario.factor_of(self.triangle.clone());
         let before = LinearisedScenario::value(&factor);
         let benefit = |candidate: &Weight| {
             let insight = self.scenario.insight(&factor, candidate.set_point);
             let after = self.scenario.value_after(&factor, &insight, &self.precision(candidate)?);
-            Ok(Benefit { set_point: candidate.set_point, factor: (0.5 * (after - before)).exp() })
+            Ok((candidate.set_point, (0.5 * (after - before)).exp()))
         };
         let mut benefits = candidates.iter().map(benefit).collect::<Result<Vec<_>, PlanError>>()?;
-        benefits.sort_by(|a, b| a.factor.total_cmp(&b.factor).then(a.set_point.cmp(&b.set_point)));
+        benefits.sort_by(|a, b| a.1.total_cmp(&b.1).then(a.0.cmp(&b.0)));
         Ok(benefits)
     }
 

@@ -16,7 +16,6 @@
 use nalgebra::{DMatrix, Vector3};
 
 use super::candidates::{Candidates, Schedule, Visit};
-use super::criterion::ReadingRange;
 use crate::fit::{Calibration, Data, Structure};
 use crate::model::{Experiment, FitError, MeasurementModel, Mounting, Observation, Weight};
 use crate::progress::unwatched;
@@ -122,16 +121,16 @@ impl Prediction {
         self.standard_uncertainty(j).map(|_| variance.sqrt())
     }
 
-    /// Root of the mean variance of the compensated reading over a range, by what the fit weighs and by all sources
+    /// Root of the mean variance of the compensated reading over forces up to `range` [m/s^2], by what the fit weighs and by all sources
     /// [m/s^2]; `None` if a coefficient is not determined.
-    pub fn reading(&self, range: ReadingRange) -> Option<[f64; 2]> {
+    pub fn reading(&self, range: f64) -> Option<[f64; 2]> {
         let all = self.covariance()?;
         let weighed = self.budget.contributions().iter().filter(|c| c.source.is_weighed());
         let p = self.model.parameters().len();
         let sum = weighed.fold(DMatrix::zeros(p, p), |sum, c| sum + c.covariance());
         let (first, count) = (self.model.parameters().first_term(), all.nrows());
         let weighed = sum.view((first, first), (count, count)).into_owned();
-        Some([weighed, all].map(|covariance| range.standard_uncertainty(&self.model, &covariance)))
+        Some([weighed, all].map(|covariance| self.model.reading_uncertainty(range, &covariance)))
     }
 
     /// Uncertainty of the compensated reading along each instrument axis from `-range` to `range` [m/s^2]; `None` if a

@@ -8,9 +8,9 @@ use super::information::LinearisedScenario;
 use super::search::Problem;
 use crate::progress::{OnProgress, advance};
 
-/// The purpose of a part of a schedule.
+/// Why a schedule has a visit or a set-up.
 #[derive(Debug, Clone, PartialEq)]
-pub struct VisitReason {
+pub struct Rationale {
     /// The criterion without it over that with it, less 1 (variance units).
     pub rise: f64,
     /// Time that it takes [s], with the set-up that would fall away.
@@ -21,18 +21,9 @@ pub struct VisitReason {
     pub factor: f64,
 }
 
-/// The reasons for the parts of a schedule.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Rationale {
-    /// By visit of the schedule.
-    pub visits: Vec<VisitReason>,
-    /// By set-up, all its visits together: the mountings of the candidates on the arm, then all rests beside it; `None` for one that
-    /// is not used.
-    pub set_ups: Vec<Option<VisitReason>>,
-}
-
 impl Rationale {
-    /// The rationale of a `schedule` that was planned by `criterion`. `progress` is asked at each part.
+    /// The rationale of each visit of a `schedule` that was planned by `criterion`; then of each set-up, all its visits together: the mountings
+    /// of the candidates on the arm, then all rests beside it; `None` for one that is not used. `progress` is asked at each part.
     ///
     /// # Errors
     /// As [`super::best_for_time`].
@@ -41,7 +32,7 @@ impl Rationale {
         criterion: &Criterion,
         schedule: &Schedule,
         progress: OnProgress<()>,
-    ) -> Result<Self, PlanError> {
+    ) -> Result<(Vec<Rationale>, Vec<Option<Rationale>>), PlanError> {
         let reference = Reference::new(candidates, criterion, schedule, progress)?;
         let without = |visits: &[usize]| {
             advance(progress, ())?;
@@ -52,10 +43,8 @@ impl Rationale {
             let visits: Vec<usize> = (0..schedule.visits.len()).filter(|&n| there(n)).collect();
             (!visits.is_empty()).then(|| without(&visits)).transpose()
         };
-        Ok(Self {
-            visits: (0..schedule.visits.len()).map(|n| without(&[n])).collect::<Result<_, PlanError>>()?,
-            set_ups: (0..candidates.set_ups()).map(of_set_up).collect::<Result<_, PlanError>>()?,
-        })
+        let visits = (0..schedule.visits.len()).map(|n| without(&[n])).collect::<Result<_, PlanError>>()?;
+        Ok((visits, (0..candidates.set_ups()).map(of_set_up).collect::<Result<_, PlanError>>()?))
     }
 }
 
@@ -114,13 +103,13 @@ impl<'a> Reference<'a> {
         visits
     }
 
-    fn without(&self, visits: &[usize]) -> VisitReason {
+    fn without(&self, visits: &[usize]) -> Rationale {
         let (value, goals) = self.judged(visits);
         let factor = |n: usize| (goals[n] / self.goals[n]).sqrt();
         let most = (0..goals.len()).max_by(|&a, &b| factor(a).total_cmp(&factor(b)).then(b.cmp(&a))).unwrap_or(0);
         let kept = (0..self.schedule.visits.len()).filter(|n| !visits.contains(n)).map(|n| self.schedule.visits[n]);
         let kept: Vec<_> = kept.collect();
-        VisitReason {
+        Rationale {
             rise: (value - self.value).exp() - 1.0,
             time: self.schedule.time - self.problem.candidates.time_of(&kept),
             parameter: self.parameters[most],

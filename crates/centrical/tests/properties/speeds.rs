@@ -1,7 +1,7 @@
 //! Measured speeds: as accurate as they say, contradicted only by what contradicts them, and worth what is predicted.
 
 use centrical::ThirdPosition;
-use centrical::plan::{Noise, Prediction, ReadingRange};
+use centrical::plan::{Noise, Prediction};
 use centrical::reduction::{Located, MeasuredSpeed, PulseTrain, Record, ReducedMounting, ScheduledPlateau, Survey};
 use centrical::simulate::{Counter, Equipment, Machine, Recorder, Sensor, Simulation, Tachometer};
 use centrical::uncertainty::{Extent, Level, ShownSpeed, StatedSpeeds};
@@ -249,7 +249,7 @@ fn predicted(model: &MeasurementModel) -> f64 {
     let force = set_points.iter().map(|s| model.experiment().nominal(s).norm()).fold(0.0, f64::max);
     let zero = vec![0.0; model.parameters().len()];
     let prediction = Prediction::of(model, &weights(model), &zero).unwrap();
-    prediction.reading(ReadingRange { force }).unwrap()[0] / (1e-6 * centrical::STANDARD_GRAVITY)
+    prediction.reading(force).unwrap()[0] / (1e-6 * centrical::STANDARD_GRAVITY)
 }
 
 /// 200 sessions of speeds that err by 10 ppm and are measured to 1 ppm: the squared error of 49 parameters over their stated

@@ -3,8 +3,7 @@
 use std::path::PathBuf;
 
 use centrical::plan::{
-    Candidates, Criterion, Goal, Plan, PlanError, Prediction, Rationale, Reached, Robustness, Schedule, Task, Visit,
-    VisitReason,
+    Candidates, Criterion, Goal, Plan, PlanError, Prediction, Rationale, Robustness, Schedule, Task, Visit,
 };
 use centrical::{Experiment, Group, OnProgress, SetPoint};
 
@@ -63,7 +62,7 @@ pub(super) fn report(
     let task = &planning.task;
     let candidates = &task.candidates;
     let schedule = &plan.schedule;
-    let rationale = Rationale::of(candidates, &task.criterion, schedule, progress).map_err(failed)?;
+    let (by_visit, by_set_up) = Rationale::of(candidates, &task.criterion, schedule, progress).map_err(failed)?;
     let measuring: f64 = schedule.visits.iter().map(|v| v.duration).sum();
     let visits: f64 = schedule.visits.iter().map(|v| candidates.visit_time(v)).sum();
     let prediction = task.predict(schedule).map_err(|source| failed(PlanError::from(source)))?;
@@ -96,8 +95,8 @@ pub(super) fn report(
         candidates: candidates.len(),
         time: schedule.time,
         time_by_use: [measuring, visits - measuring, schedule.time - visits],
-        mountings: mountings(task, plan, &rationale),
-        rests: rests(planning, plan, &rationale),
+        mountings: mountings(task, plan, &by_visit, &by_set_up),
+        rests: rests(planning, plan, &by_visit, by_set_up.last().and_then(Option::as_ref)),
         goals: goals(task, &prediction),
         prediction: PredictionReport::of(&prediction, planning.range, request.coverage)
             .map_err(|source| failed(PlanError::from(source)))?,
@@ -105,11 +104,16 @@ pub(super) fn report(
     })
 }
 
-fn mountings(task: &Task, plan: &Plan, rationale: &Rationale) -> Vec<PlannedMounting> {
+fn mountings(
+    task: &Task,
+    plan: &Plan,
+    by_visit: &[Rationale],
+    by_set_up: &[Option<Rationale>],
+) -> Vec<PlannedMounting> {
     let experiment = task.candidates.experiment();
     let visits = &plan.schedule.visits;
     let mut mountings = Vec::new();
-    let on_arm = experiment.mountings_on_arm().zip(&rationale.set_ups);
+    let on_arm = experiment.mountings_on_arm().zip(by_set_up);
     let time_until = |m: usize| {
         let is_before = |visit: &&Visit| experiment.set_points[visit.candidate].mounting < m;
         task.candidates.time_of(&visits.iter().filter(is_before).copied().collect::<Vec<_>>())
@@ -122,7 +126,7 @@ fn mountings(task: &Task, plan: &Plan, rationale: &Rationale) -> Vec<PlannedMoun
                 speed: omega.abs(),
                 angle,
                 duration: visits[n].duration,
-                reason: reason(task, &rationale.visits[n]),
+                reason: reason(task, &by_visit[n]),
             }
         };
         mountings.push(PlannedMounting {
@@ -137,23 +141,28 @@ fn mountings(task: &Task, plan: &Plan, rationale: &Rationale) -> Vec<PlannedMoun
 }
 
 /// The rests beside the arm, which are the last candidates.
-fn rests(planning: &Planning, plan: &Plan, rationale: &Rationale) -> Option<ChosenRests> {
+fn rests(
+    planning: &Planning,
+    plan: &Plan,
+    by_visit: &[Rationale],
+    together: Option<&Rationale>,
+) -> Option<ChosenRests> {
     let table = planning.rests.as_ref()?;
     let RestSource::Plan(planned) = &table.source else { return None };
     let first = planning.task.candidates.len() - table.count();
-    let reasons = rationale.visits.iter().zip(&plan.schedule.visits);
-    let rest = |(why, visit): (&VisitReason, &Visit)| {
+    let reasons = by_visit.iter().zip(&plan.schedule.visits);
+    let rest = |(why, visit): (&Rationale, &Visit)| {
         let up = planned.up_b[visit.candidate.checked_sub(first)?];
         Some(ChosenRest { up: up.into(), duration: visit.duration, reason: reason(&planning.task, why) })
     };
     Some(ChosenRests {
-        reason: reason(&planning.task, rationale.set_ups.last()?.as_ref()?),
+        reason: reason(&planning.task, together?),
         attitude_uncertainty: table.attitudes.as_ref().map(|known| known.uncertainty),
         rests: reasons.filter_map(rest).collect(),
     })
 }
 
-fn reason(task: &Task, reason: &VisitReason) -> ReasonReport {
+fn reason(task: &Task, reason: &Rationale) -> ReasonReport {
     ReasonReport {
         rise: (1.0 + reason.rise).sqrt() - 1.0,
         time: reason.time,
@@ -164,7 +173,7 @@ fn reason(task: &Task, reason: &VisitReason) -> ReasonReport {
 
 fn goals(task: &Task, prediction: &Prediction) -> Vec<GoalReport> {
     let parameters = prediction.model().parameters();
-    let report = |(goal, reached): (&Goal, Reached)| {
+    let report = |(goal, [type_a, type_b, combined]): (&Goal, [Option<f64>; 3])| {
         let (unit, group) = match goal {
             Goal::Parameter { name, .. } => {
                 // The goals were made from the names of these parameters.
@@ -173,7 +182,6 @@ fn goals(task: &Task, prediction: &Prediction) -> Vec<GoalReport> {
             }
             Goal::Reading { .. } => ("m/s^2", Group::Bias),
         };
-        let Reached { type_a, type_b, combined } = reached;
         let (name, unit) = (goal.name().to_owned(), unit.to_owned());
         Some(GoalReport { name, unit, group, wanted: goal.uncertainty(), type_a, type_b, combined })
     };

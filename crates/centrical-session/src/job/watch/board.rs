@@ -4,7 +4,6 @@ use std::path::PathBuf;
 use std::time::{Duration, Instant, SystemTime};
 
 use centrical::fit::Progress;
-use centrical::plan::Benefit;
 use centrical::uncertainty::{Level, Rivals};
 use centrical::{Calibration, Data, FitError, Group, MeasurementModel, Parameter, Study, Weight, unwatched};
 
@@ -31,8 +30,8 @@ pub struct WatchProgress<'a> {
     /// The next set point of the schedule, and what will be known after it.
     pub next: Option<(usize, Progress)>,
     /// The most useful plateau that remains in the mounting on the arm, and that of the other mountings: by the mean
-    /// uncertainty of the compensated reading with it over that without. Of plateaus that one look finds, the last one has it.
-    pub best: Vec<Benefit>,
+    /// uncertainty of the compensated reading with it over that without, which stands beside its set point. Of plateaus that one look finds, the last one has it.
+    pub best: Vec<(usize, f64)>,
 }
 
 impl WatchProgress<'_> {
@@ -128,10 +127,8 @@ impl<'a> Board<'a> {
         self.report.unknowns = progress.model.parameters().len();
         self.report.groups = progress.groups(self.targets);
         self.report.next = progress.next.as_ref().map(|(next, _)| PlateauLabel::of(session, *next));
-        let benefit = |gain: &centrical::plan::Benefit| LiveBenefit {
-            plateau: PlateauLabel::of(session, gain.set_point),
-            factor: gain.factor,
-        };
+        let benefit =
+            |&(set_point, factor): &(usize, f64)| LiveBenefit { plateau: PlateauLabel::of(session, set_point), factor };
         self.report.best = progress.best.iter().map(benefit).collect();
         let fitted = |source| Error::fit(&session.file, source);
         self.report.lost = lost(progress).map_err(fitted)?;

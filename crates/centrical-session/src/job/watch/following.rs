@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use std::{fs, io, thread};
 
 use centrical::fit::{Follower, Progress};
-use centrical::plan::{Benefit, Criterion, NextPlateau, PlanError, ReadingRange};
+use centrical::plan::{Criterion, NextPlateau, PlanError};
 use centrical::reduction::MeasuredSpeed;
 use centrical::{FitError, Group, MeasurementModel, Observation, SetPoint, Weight};
 use nalgebra::Vector3;
@@ -62,9 +62,8 @@ impl<'a> Following<'a> {
         let follower = Follower::resume(model, state.taken(), &state.point, state.reference())
             .map_err(|source| Error::fit(&state_file, source))?;
         let experiment = &session.experiment;
-        let force = largest_force(experiment);
         let planning = |source| Error::planning(&session.file, source);
-        let mut next = NextPlateau::new(model, &Criterion::Reading(ReadingRange { force })).map_err(planning)?;
+        let mut next = NextPlateau::new(model, &Criterion::Reading(largest_force(experiment))).map_err(planning)?;
         let taken: Vec<Weight> = follower.taken().iter().map(Weight::from).collect();
         next.take(&taken).map_err(planning)?;
         let mut come = vec![false; experiment.set_points.len()];
@@ -286,7 +285,7 @@ impl<'a> Following<'a> {
 
     /// The best of the plateaus that remain in the mounting on the arm, and of those of later mountings, by what they would
     /// bring if they were as noisy as the last one. Of plateaus that are alike the first is asked for.
-    fn best_next(&self, last: &Observation) -> Result<Vec<Benefit>, Error> {
+    fn best_next(&self, last: &Observation) -> Result<Vec<(usize, f64)>, Error> {
         let set_points = &self.session.experiment.set_points;
         let mut alike = HashSet::new();
         let mut is_new = |s: &SetPoint| alike.insert((s.mounting, s.omega.to_bits(), s.angle.to_bits()));
@@ -295,7 +294,7 @@ impl<'a> Following<'a> {
             remaining.map(|set_point| Weight { set_point, covariance: last.covariance }).collect();
         let benefits = self.planned(self.next.benefits(&remaining))?;
         let on_the_arm = set_points[last.set_point].mounting;
-        let is_here = |benefit: &&Benefit| set_points[benefit.set_point].mounting == on_the_arm;
+        let is_here = |(set_point, _): &&(usize, f64)| set_points[*set_point].mounting == on_the_arm;
         let here = benefits.iter().find(is_here);
         let elsewhere = benefits.iter().find(|benefit| !is_here(benefit));
         Ok(here.into_iter().chain(elsewhere).copied().collect())
