@@ -5,6 +5,7 @@ mod equal_columns;
 mod input;
 mod joined;
 mod overview;
+mod packed_times;
 mod passes;
 mod reader;
 mod sample_cache;

@@ -1,6 +1,6 @@
 //! The plateau means of a session, wherever they come from.
 
-use centrical::reduction::{ClockAgreement, ClockOffset, MeasuredSpeed, PlateauMean};
+use centrical::reduction::{ClockAgreement, MeasuredSpeed, PlateauMean};
 use centrical::uncertainty::BetweenRests;
 use centrical::{MeasurementModel, Observation, SetPoint};
 use nalgebra::{Matrix3, Vector3};
@@ -32,8 +32,6 @@ pub struct MountingFindings {
     pub overview: RecordOverview,
     /// Time constant of the settling after a ramp [s]; none if no settling was seen.
     pub settling_time: Option<f64>,
-    /// The centrifuge's clock against the unit's; none without telemetry, or if no ramp is in both.
-    pub clock_offset: Option<ClockOffset>,
     /// How the ramps of the telemetry agree with those of the record; none without telemetry.
     pub agreement: Option<ClockAgreement>,
     /// Readings of newtonometers 1, 2, 3 that were interpolated to the stamps of another one; none unless each has a file with stamps

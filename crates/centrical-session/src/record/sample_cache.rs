@@ -2,8 +2,9 @@
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use centrical::reduction::{PackedTimes, RecordSlice};
+use centrical::reduction::RecordSlice;
 
+use super::packed_times::PackedTimes;
 use super::reader::RecordIndex;
 
 /// Bytes that samples take at most: an hour at 1 kHz and more.

@@ -8,7 +8,7 @@ mod strips;
 use nalgebra::{Matrix3, Vector3};
 
 use super::error::ReductionError;
-use super::locate::{ClockAgreement, ClockOffset, Located, Shape, TURNING, Timing, Window};
+use super::locate::{ClockAgreement, Located, Shape, TURNING, Timing, Window};
 use super::plateau::{Arc, LeftOut};
 use super::record::RecordSlice;
 use super::survey::Blocks;
@@ -286,11 +286,6 @@ impl ReducedMounting {
     /// Time constant of the settling after a ramp [s]; `None` if the record shows no settling.
     pub fn settling_time(&self) -> Option<f64> {
         self.settling_time
-    }
-
-    /// The centrifuge's clock against the unit's; `None` without telemetry, or if no ramp is in both.
-    pub fn clock_offset(&self) -> Option<ClockOffset> {
-        self.timing.clock_offset
     }
 
     /// How the ramps of the telemetry, or of the counter of revolutions, agree with those of the record.

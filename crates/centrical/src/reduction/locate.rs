@@ -22,7 +22,7 @@ use super::error::ReductionError;
 use super::plateau::ScheduledPlateau;
 use super::survey::{Blocks, Survey};
 use crate::statistics::whole;
-pub use clock::{ClockAgreement, ClockOffset, SpeedTrace};
+pub use clock::{ClockAgreement, SpeedTrace};
 use hypothesis::Line;
 pub(super) use shape::{Interval, Shape, TURNING, Window};
 pub use tachometer::{PulseTrain, SpeedReading};
@@ -30,7 +30,6 @@ pub use tachometer::{PulseTrain, SpeedReading};
 /// What telemetry or a counter of revolutions says of the plateaus of a record.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Timing {
-    pub clock_offset: Option<ClockOffset>,
     /// How the ramps agree with those of the record; `None` where nothing shows the speeds.
     pub agreement: Option<ClockAgreement>,
     /// Median speed on each plateau by the telemetry [rad/s].
@@ -135,36 +134,32 @@ impl Located {
 
     /// Takes the speeds of the plateaus from telemetry; its clock is found by the ramps.
     pub fn time_telemetry(&mut self, telemetry: &SpeedTrace) {
-        let offset = self.compare(telemetry);
-        self.timing.clock_offset = offset;
-        if let Some(offset) = offset.filter(|_| self.is_of_the_record()) {
+        if let Some(offset) = self.compare(telemetry) {
             let (margin, step) = (self.margin(&telemetry.t), telemetry.step());
-            let median = |window: &Window| clock::median_speed(telemetry, &offset, window.span);
+            let median = |window: &Window| clock::median_speed(telemetry, offset, window.span);
             self.timing.speeds = self.windows.iter().map(median).collect();
-            self.read(|window| telemetry.speed(&offset, window, margin, step));
+            self.read(|window| telemetry.speed(offset, window, margin, step));
         }
     }
 
-    /// The same from a counter of revolutions, in place of telemetry.
+    /// The same from a counter of revolutions, in place of telemetry; pulses of another record leave the offset as telemetry has it.
     pub fn time_pulses(&mut self, pulses: &PulseTrain) {
-        let offset = self.compare(&pulses.trace());
-        if let Some(offset) = offset.filter(|_| self.is_of_the_record()) {
-            self.timing.clock_offset = Some(offset);
+        let of_telemetry = self.timing.agreement.and_then(|agreement| agreement.offset);
+        if let Some(offset) = self.compare(&pulses.trace()) {
             let margin = self.margin(&[]);
-            self.read(|window| pulses.speed(&offset, window, margin));
+            self.read(|window| pulses.speed(offset, window, margin));
+        } else if let Some(agreement) = &mut self.timing.agreement {
+            agreement.offset = of_telemetry;
         }
     }
 
-    /// Compares the clock of a trace of speeds with that of the record. Readings of another source are given up.
-    fn compare(&mut self, trace: &SpeedTrace) -> Option<ClockOffset> {
-        let (offset, agreement) = clock::compare(&self.ramps, self.blocks.width, &self.schedule, trace);
+    /// Compares the clock of a trace of speeds with that of the record: their offset [s] if the trace is of the record. Readings of another
+    /// source are given up.
+    fn compare(&mut self, trace: &SpeedTrace) -> Option<f64> {
+        let agreement = clock::compare(&self.ramps, self.blocks.width, &self.schedule, trace);
         self.timing.agreement = Some(agreement);
         self.timing.readings.fill(None);
-        offset
-    }
-
-    fn is_of_the_record(&self) -> bool {
-        self.timing.agreement.is_some_and(|agreement| agreement.is_of_the_record())
+        agreement.offset.filter(|_| agreement.is_of_the_record()).map(|[seconds, _]| seconds)
     }
 
     /// The speeds of all plateaus that spin.

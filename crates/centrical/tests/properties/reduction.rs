@@ -328,10 +328,11 @@ fn the_clock_offset_comes_from_the_ramps() {
         let stream = Stream::default().rough();
         let telemetry = stream.telemetry(offset);
         let reduced = stream.record().reduce(Some(&telemetry), &stream.schedule()).expect("plateaus are there");
-        let found = reduced.clock_offset().expect("ramps are in both");
-        assert_eq!(found.ramps, 5);
+        let found = reduced.clock_agreement().expect("there is telemetry");
+        assert_eq!(found.agreeing, 5);
         // A twentieth of a block.
-        assert!((found.seconds - offset).abs() < 5e-3, "{found:?}");
+        let [seconds, _] = found.offset.expect("ramps are in both");
+        assert!((seconds - offset).abs() < 5e-3, "{found:?}");
         for (mean, omega) in reduced.means(&NoiseModel::pool([&reduced])).iter().zip(&stream.omegas) {
             let speed = mean.measured_speed.expect("telemetry covers the record");
             assert!((speed - omega).abs() < 1e-4 * omega + 1e-9, "{speed} {omega}");

@@ -31,7 +31,7 @@ fn windows_and_means(name: &str) {
     let noise = NoiseModel::pool(&reduced);
     let (mut chi_squared, mut freedom) = (0.0, 0.0);
     for (m, reduced) in reduced.iter().enumerate() {
-        assert!(reduced.clock_offset().is_some_and(|offset| offset.standard_uncertainty < 0.01));
+        assert!(reduced.clock_agreement().and_then(|clock| clock.offset).is_some_and(|[_, u]| u < 0.01));
         for (k, mean) in reduced.means(&noise).iter().enumerate() {
             let [start, end] = session.window(m, k);
             let [from, to] = mean.window;

@@ -271,7 +271,7 @@ fn mountings(model: &MeasurementModel, reduced: &Reduced) -> Vec<MountingSummary
             position: experiment.positions[mounting.position].id.clone(),
             arm: mounting.arm_y.into(),
             settling_time: findings.and_then(|f| f.settling_time),
-            clock_offset: findings.and_then(|f| f.clock_offset).map(|offset| offset.seconds),
+            clock_offset: findings.and_then(|f| f.agreement?.offset).map(|[seconds, _]| seconds),
             interpolated: findings.and_then(|f| f.interpolated),
             unscheduled: findings.map(|f| f.unscheduled.clone()).unwrap_or_default(),
         }

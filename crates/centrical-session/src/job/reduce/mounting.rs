@@ -96,7 +96,6 @@ impl OfRecord {
         let findings = MountingFindings {
             overview: RecordOverview::of(number + 1, &survey.extremes().collect::<Vec<_>>()),
             settling_time: reduced.settling_time(),
-            clock_offset: reduced.clock_offset(),
             agreement: reduced.clock_agreement(),
             interpolated,
             unscheduled: reduced.unscheduled().to_vec(),

@@ -68,10 +68,8 @@ impl Growth {
     /// Notes what was found in it, of `scheduled` plateaus.
     pub fn find(&mut self, reduced: &ReducedMounting, scheduled: usize) {
         self.shows_all = reduced.plateau_count() == scheduled;
-        self.clock_offset = reduced.clock_offset().map(|offset| {
-            let uncertainty = offset.standard_uncertainty;
-            (offset.seconds, uncertainty.is_finite().then_some(uncertainty))
-        });
+        let offset = reduced.clock_agreement().and_then(|agreement| agreement.offset);
+        self.clock_offset = offset.map(|[seconds, u]| (seconds, u.is_finite().then_some(u)));
     }
 
     /// Its file.

@@ -15,23 +15,15 @@ pub struct SpeedTrace {
     pub omega: Vec<f64>,
 }
 
-/// The unit's time less the centrifuge's.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ClockOffset {
-    /// Median over the ramps [s].
-    pub seconds: f64,
-    /// Standard uncertainty, from the scatter of the ramps [s]; infinite for a single ramp.
-    pub standard_uncertainty: f64,
-    /// Ramps that agree.
-    pub ramps: usize,
-}
-
 /// More passages than these are noise: a telemetry has a few for each ramp.
 const MOST_PASSAGES: usize = 1000;
 
 /// How the ramps of the telemetry agree with those of the record.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ClockAgreement {
+    /// The unit's time less the centrifuge's: median over the ramps that agree, and its standard uncertainty from their scatter [s], infinite for
+    /// a single ramp. `None` if no ramp is in both.
+    pub offset: Option<[f64; 2]>,
     /// Ramps of the record in the time that the telemetry covers.
     pub ramps: usize,
     /// Ramps of the record that the telemetry has at the same time, up to the offset of the clocks.
@@ -52,22 +44,19 @@ impl ClockAgreement {
 }
 
 /// The offset of the clocks, and how far the ramps bear it out. Where fewer than half of the ramps agree, other units of
-/// the speed and other rates of the clock are tried, and taken if most ramps agree then. The offset is `None` if no ramp of
-/// the record is in the telemetry.
+/// the speed and other rates of the clock are tried, and taken if most ramps agree then.
 pub(super) fn compare(
     ramps: &[Ramp],
     width: f64,
     schedule: &[ScheduledPlateau],
     telemetry: &SpeedTrace,
-) -> (Option<ClockOffset>, ClockAgreement) {
-    let as_it_stands = offset(ramps, width, telemetry, 1.0);
-    let agreeing = |offset: &Option<ClockOffset>| offset.map_or(0, |offset| offset.ramps);
-    let mut best = (as_it_stands, 1.0, 1.0, agreeing(&as_it_stands));
+) -> ClockAgreement {
+    let (offset, agreeing) = self::offset(ramps, width, telemetry, 1.0);
+    let mut best = (offset, 1.0, 1.0, agreeing);
     if 2 * best.3 < ramps.len() {
-        let scale = scale_of(schedule, telemetry);
-        let scaled = scale.and_then(|scale| offset(ramps, width, telemetry, scale));
-        if agreeing(&scaled) > best.3 {
-            best = (scaled, scale.unwrap_or(1.0), 1.0, agreeing(&scaled));
+        let scaled = scale_of(schedule, telemetry).map(|scale| (scale, self::offset(ramps, width, telemetry, scale)));
+        if let Some((scale, (offset, agreeing))) = scaled.filter(|(_, (_, agreeing))| *agreeing > best.3) {
+            best = (offset, scale, 1.0, agreeing);
         }
     }
     if 2 * best.3 < ramps.len() {
@@ -77,11 +66,11 @@ pub(super) fn compare(
         }
     }
     let (offset, scale, rate, agreeing) = best;
-    let shift = offset.map_or(0.0, |offset| offset.seconds);
+    let shift = offset.map_or(0.0, |[seconds, _]| seconds);
     let span = [telemetry.t.first(), telemetry.t.last()].map(|t| rate * t.copied().unwrap_or(f64::NAN) + shift);
     let is_covered = |ramp: &&Ramp| rate != 1.0 || offset.is_none() || (span[0]..=span[1]).contains(&ramp.t);
     let covered = ramps.iter().filter(is_covered).count();
-    (offset, ClockAgreement { ramps: covered, agreeing, scale, rate, span })
+    ClockAgreement { offset, ramps: covered, agreeing, scale, rate, span }
 }
 
 /// Fastest speed of the telemetry, a lone report left out, over that of the schedule.
@@ -114,8 +103,8 @@ fn rate_of(ramps: &[Ramp], width: f64, telemetry: &SpeedTrace, scale: f64) -> Op
 }
 
 /// Estimates the offset: on every ramp the square of the speed, and with it the force, passes the middle between
-/// two plateaus at one instant. `None` if no ramp of the record is in the telemetry.
-fn offset(ramps: &[Ramp], width: f64, telemetry: &SpeedTrace, scale: f64) -> Option<ClockOffset> {
+/// two plateaus at one instant. `None` if no ramp of the record is in the telemetry. With it the number of ramps that agree.
+fn offset(ramps: &[Ramp], width: f64, telemetry: &SpeedTrace, scale: f64) -> (Option<[f64; 2]>, usize) {
     let mut offsets = passages_of(ramps, telemetry, scale);
     for (ramp, offsets) in ramps.iter().zip(&mut offsets) {
         for passage in offsets.iter_mut() {
@@ -123,7 +112,8 @@ fn offset(ramps: &[Ramp], width: f64, telemetry: &SpeedTrace, scale: f64) -> Opt
         }
     }
     // One passage may have several partners (the same speeds run twice): the right offset is the one most ramps have.
-    let (best, _) = partners(&offsets, width).max_by(|(a, m), (b, n)| m.cmp(n).then(b.abs().total_cmp(&a.abs())))?;
+    let best = partners(&offsets, width).max_by(|(a, m), (b, n)| m.cmp(n).then(b.abs().total_cmp(&a.abs())));
+    let Some((best, _)) = best else { return (None, 0) };
     let closest =
         |of_ramp: &Vec<f64>| of_ramp.iter().copied().min_by(|a, b| (a - best).abs().total_cmp(&(b - best).abs()));
     let mut agreeing: Vec<f64> = offsets.iter().filter_map(closest).filter(|o| (o - best).abs() < width).collect();
@@ -133,7 +123,7 @@ fn offset(ramps: &[Ramp], width: f64, telemetry: &SpeedTrace, scale: f64) -> Opt
     // Standard deviation of a median of normal values: sqrt(pi / 2) of the mean's.
     let one = (std::f64::consts::FRAC_PI_2).sqrt() * MAD * median(&mut scatter);
     let standard_uncertainty = if ramps > 1 { one / (ramps as f64).sqrt() } else { f64::INFINITY };
-    Some(ClockOffset { seconds, standard_uncertainty, ramps })
+    (Some([seconds, standard_uncertainty]), ramps)
 }
 
 /// Every offset, in order, with the number of ramps that have one within `width` of it.
@@ -184,9 +174,9 @@ fn passages_of(ramps: &[Ramp], telemetry: &SpeedTrace, scale: f64) -> Vec<Vec<f6
     found
 }
 
-/// Median speed by the telemetry in a window of the unit's time [rad/s].
-pub(super) fn median_speed(telemetry: &SpeedTrace, offset: &ClockOffset, window: [f64; 2]) -> Option<f64> {
-    let [from, to] = window.map(|t| t - offset.seconds);
+/// Median speed by the telemetry, whose clock is off by `offset` [s], in a window of the unit's time [rad/s].
+pub(super) fn median_speed(telemetry: &SpeedTrace, offset: f64, window: [f64; 2]) -> Option<f64> {
+    let [from, to] = window.map(|t| t - offset);
     let inside = telemetry.t.partition_point(|t| *t < from)..telemetry.t.partition_point(|t| *t <= to);
     let mut speeds: Vec<f64> = telemetry.omega.get(inside)?.iter().copied().filter(|omega| omega.is_finite()).collect();
     (!speeds.is_empty()).then(|| median(&mut speeds))

@@ -9,7 +9,7 @@ use std::f64::consts::TAU;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::clock::{ClockOffset, SpeedTrace};
+use super::clock::SpeedTrace;
 use super::shape::FADED;
 use super::shape::Window;
 use crate::linalg::least_squares::LeastSquares;
@@ -64,9 +64,9 @@ impl PulseTrain {
     }
 
     /// The speed of the plateau in `window`, `margin` [s] left out at both ends.
-    pub(super) fn speed(&self, offset: &ClockOffset, window: &Window, margin: f64) -> Option<SpeedReading> {
+    pub(super) fn speed(&self, offset: f64, window: &Window, margin: f64) -> Option<SpeedReading> {
         let times = inside(&self.t, offset, window, margin)?;
-        let t: Vec<f64> = self.t[times].iter().map(|t| t + offset.seconds).collect();
+        let t: Vec<f64> = self.t[times].iter().map(|t| t + offset).collect();
         let mut steps: Vec<f64> = t.windows(2).map(|pair| pair[1] - pair[0]).collect();
         let step = median(&mut steps);
         if step.is_nan() || step <= 0.0 {
@@ -92,14 +92,14 @@ impl PulseTrain {
 
 impl SpeedTrace {
     /// The speed of the plateau in `window`, `margin` [s] left out at both ends. `step` is that of the reports.
-    pub(super) fn speed(&self, offset: &ClockOffset, window: &Window, margin: f64, step: f64) -> Option<SpeedReading> {
+    pub(super) fn speed(&self, offset: f64, window: &Window, margin: f64, step: f64) -> Option<SpeedReading> {
         let times = inside(&self.t, offset, window, margin)?;
         let mut reports: Vec<f64> =
             self.omega[times.clone()].iter().copied().filter(|omega| omega.is_finite()).collect();
         let middle = median(&mut reports);
         let is_of_plateau = |k: &usize| (self.omega[*k] - middle).abs() <= INTERRUPTED * middle.abs();
         let (t, omega): (Vec<f64>, Vec<f64>) =
-            times.filter(is_of_plateau).map(|k| (self.t[k] + offset.seconds, self.omega[k])).unzip();
+            times.filter(is_of_plateau).map(|k| (self.t[k] + offset, self.omega[k])).unzip();
         let mut columns = vec![vec![1.0; t.len()]];
         columns.extend(settling(&t, window));
         let fitted = Fitted::of(&columns, &t, &omega, step)?;
@@ -118,8 +118,8 @@ impl SpeedTrace {
 }
 
 /// The samples in a window without its margins; `None` if these leave nothing.
-fn inside(t: &[f64], offset: &ClockOffset, window: &Window, margin: f64) -> Option<std::ops::Range<usize>> {
-    let [from, to] = [window.span[0] + margin, window.span[1] - margin].map(|end| end - offset.seconds);
+fn inside(t: &[f64], offset: f64, window: &Window, margin: f64) -> Option<std::ops::Range<usize>> {
+    let [from, to] = [window.span[0] + margin, window.span[1] - margin].map(|end| end - offset);
     let range = t.partition_point(|t| *t < from)..t.partition_point(|t| *t <= to);
     (range.len() >= 4).then_some(range)
 }

@@ -1,5 +1,10 @@
 //! The times of neighbouring samples, kept in a byte each where they are equally spaced.
 
+#![allow(
+    clippy::inline_always,
+    reason = "what is not inlined into the function with the wide vectors is compiled for the narrow ones"
+)]
+
 use std::ops::Range;
 
 use pulp::{Arch, Simd, WithSimd};
