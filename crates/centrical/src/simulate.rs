@@ -24,9 +24,7 @@ mod tumble;
 pub use equipment::{
     Chance, Coloured, Counter, Equipment, Hand, Machine, Recorder, Sensor, SimulationError, Tachometer,
 };
-pub use motion::TruePlateau;
 pub use record::Records;
-pub use tumble::TrueRest;
 
 use std::ops::Range;
 
@@ -204,8 +202,8 @@ impl<'a> Simulation<'a> {
 }
 
 impl SimulatedMounting<'_> {
-    /// The plateaus in the order of the schedule.
-    pub fn plateaus(&self) -> Vec<TruePlateau> {
+    /// The plateaus in the order of the schedule: beginning and end, between ramps, the unit's clock [s]; speed once settled [rad/s].
+    pub fn plateaus(&self) -> Vec<([f64; 2], f64)> {
         self.motion.plateaus()
     }
 
@@ -241,8 +239,8 @@ impl SimulatedMounting<'_> {
 }
 
 impl SimulatedTumble<'_> {
-    /// The rests in their order.
-    pub fn rests(&self) -> Vec<TrueRest> {
+    /// The rests in their order: beginning and end, between turns, the unit's clock [s]; where up is, instrument axes, of length 1.
+    pub fn rests(&self) -> Vec<([f64; 2], Vector3<f64>)> {
         self.motion.rests().collect()
     }
 

@@ -1,6 +1,6 @@
 //! `truth.json`: what was simulated, schema `centrical-truth/1`.
 
-use centrical::simulate::{Counter, Equipment, Tachometer, TruePlateau, TrueRest};
+use centrical::simulate::{Counter, Equipment, Tachometer};
 use centrical::{Kind, Parameter, SetPoint};
 use nalgebra::Vector3;
 use serde_json::{Value, json};
@@ -15,7 +15,8 @@ const SCHEMA: &str = "centrical-truth/1";
 /// A mounting as it was simulated and written.
 #[derive(Debug)]
 pub(crate) struct Written {
-    pub plateaus: Vec<TruePlateau>,
+    /// Window [s] and speed [rad/s].
+    pub plateaus: Vec<([f64; 2], f64)>,
     pub clock_offset: f64,
     pub clock_drift: f64,
 }
@@ -31,7 +32,8 @@ pub(crate) struct WrittenSession {
 /// A `[[tumble]]` as it was simulated and written.
 #[derive(Debug)]
 pub(crate) struct WrittenTumble {
-    pub rests: Vec<TrueRest>,
+    /// Window [s] and direction of up, instrument axes.
+    pub rests: Vec<([f64; 2], Vector3<f64>)>,
     /// Change of each bias from the switch-on of the arm, or of the first tumble, to that of its rests [m/s^2].
     pub bias_change: Vector3<f64>,
 }
@@ -70,17 +72,16 @@ pub(crate) fn truth_json(truth: &Truth, seed: u64, written: &WrittenSession) -> 
 }
 
 /// The rests of `[[tumble]]` number `n` from 0: tumble from 1, index from 0, up in instrument axes.
-fn rests_of(n: usize, rests: &[TrueRest]) -> Vec<Value> {
-    let rest = |(index, TrueRest { window, up_z }): (usize, &TrueRest)| json!({"tumble": n + 1, "index": index, "up": up_z.as_slice(), "window": window});
+fn rests_of(n: usize, rests: &[([f64; 2], Vector3<f64>)]) -> Vec<Value> {
+    let rest = |(index, (window, up_z)): (usize, &([f64; 2], Vector3<f64>))| json!({"tumble": n + 1, "index": index, "up": up_z.as_slice(), "window": window});
     rests.iter().enumerate().map(rest).collect()
 }
 
 /// The plateaus of mounting `m`, named as in `result.json`: mounting from 1, index from 0.
-fn plateaus_of(plan: &Session, m: usize, plateaus: &[TruePlateau]) -> Vec<Value> {
+fn plateaus_of(plan: &Session, m: usize, plateaus: &[([f64; 2], f64)]) -> Vec<Value> {
     let schedule = plan.experiment.set_points.iter().filter(|s| s.mounting == m);
-    let plateau = |(index, (set_point, plateau)): (usize, (&SetPoint, &TruePlateau))| {
+    let plateau = |(index, (set_point, (window, omega))): (usize, (&SetPoint, &([f64; 2], f64)))| {
         let angle = set_point.is_rest().then_some(set_point.angle);
-        let TruePlateau { window, omega } = plateau;
         json!({"mounting": m + 1, "index": index, "speed": omega, "angle": angle, "window": window})
     };
     schedule.zip(plateaus).enumerate().map(plateau).collect()

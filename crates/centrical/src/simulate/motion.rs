@@ -17,15 +17,6 @@ pub(super) struct Motion {
     duration: f64,
 }
 
-/// One plateau as it truly was.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct TruePlateau {
-    /// Beginning and end, between ramps, the unit's clock [s].
-    pub window: [f64; 2],
-    /// Speed once settled [rad/s].
-    pub omega: f64,
-}
-
 /// A stretch of one law.
 #[derive(Debug, Clone, Copy)]
 struct Segment {
@@ -128,12 +119,10 @@ impl Motion {
         self.duration
     }
 
-    /// The plateaus in order.
-    pub fn plateaus(&self) -> Vec<TruePlateau> {
+    /// Window and speed once settled of each plateau.
+    pub fn plateaus(&self) -> Vec<([f64; 2], f64)> {
         let plateau = |segment: &Segment| match segment.law {
-            Law::Plateau { omega, .. } => {
-                Some(TruePlateau { window: [segment.start, segment.start + segment.duration], omega })
-            }
+            Law::Plateau { omega, .. } => Some(([segment.start, segment.start + segment.duration], omega)),
             _ => None,
         };
         self.segments.iter().filter_map(plateau).collect()

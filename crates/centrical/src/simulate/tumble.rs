@@ -11,15 +11,6 @@ use super::equipment::Hand;
 use super::markov::Markov;
 use crate::statistics::Random;
 
-/// A rest as it truly was.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct TrueRest {
-    /// Beginning and end, between turns, the unit's clock [s].
-    pub window: [f64; 2],
-    /// Where up is, instrument axes, of length 1.
-    pub up_z: Vector3<f64>,
-}
-
 /// What acts in one rest.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Held {
@@ -95,10 +86,10 @@ impl HandMotion {
         self.duration
     }
 
-    /// The rests in order.
-    pub fn rests(&self) -> impl Iterator<Item = TrueRest> + '_ {
+    /// Window and direction of up of each rest.
+    pub fn rests(&self) -> impl Iterator<Item = ([f64; 2], Vector3<f64>)> {
         let still = self.stages.iter().filter(|stage| stage.turn.is_none());
-        still.map(|s| TrueRest { window: [s.start, s.start + s.duration], up_z: s.force.normalize() })
+        still.map(|s| ([s.start, s.start + s.duration], s.force.normalize()))
     }
 }
 

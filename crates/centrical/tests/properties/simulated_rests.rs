@@ -65,11 +65,11 @@ fn a_rest_reads_what_the_model_says() {
     let (tumble_made, set_points) = (tumble(&simulation, &model), rests(&model));
     let (made, samples) = (tumble_made.rests(), record(&tumble_made));
     assert_eq!(made.len(), 9);
-    for (rest, set_point) in made.iter().zip(&set_points) {
+    for (([from, to], up_z), set_point) in made.iter().zip(&set_points) {
         let expected = model.reading(set_point, &truth) + change;
         let gravity = model.experiment().site.gravity;
-        assert!((rest.up_z * gravity - model.specific_force(set_point, &truth)).amax() < 1e-13);
-        let within = samples.t.iter().enumerate().filter(|(_, t)| (rest.window[0]..rest.window[1]).contains(t));
+        assert!((up_z * gravity - model.specific_force(set_point, &truth)).amax() < 1e-13);
+        let within = samples.t.iter().enumerate().filter(|(_, t)| (from..to).contains(t));
         let mut count = 0;
         for (n, _) in within {
             // Some 30 products of numbers up to 10.
@@ -107,7 +107,7 @@ fn the_means_of_simulated_rests_are_as_uncertain_as_stated() {
         assert!((22..=26).contains(&found.len()), "{seed}: {}", found.len());
         for rest in &found {
             let is_within = |made: &[f64; 2]| rest.window[0] > made[0] - 0.1 && rest.window[1] < made[1] + 0.1;
-            let n = made.iter().position(|made| is_within(&made.window)).expect("a rest that was made");
+            let n = made.iter().position(|made| is_within(&made.0)).expect("a rest that was made");
             let set_point = rests(&model)[n];
             let expected = model.reading(&set_point, &truth) + simulation.bias_change(set_point.mounting);
             let error = rest.mean - expected;
@@ -138,7 +138,7 @@ fn each_imperfection_has_draws_of_its_own() {
     let trembling = Equipment { hand: HAND, ..steady };
     let windows = |equipment: &Equipment| {
         let simulation = Simulation::new(&with, &both, equipment, 7).unwrap();
-        tumble(&simulation, &with).rests().iter().map(|rest| rest.window).collect::<Vec<_>>()
+        tumble(&simulation, &with).rests().iter().map(|(window, _)| *window).collect::<Vec<_>>()
     };
     assert_eq!(windows(&steady), windows(&trembling));
 }

@@ -40,7 +40,7 @@ fn measured(
         let reduced = reduced(model, &simulation, m, is_counted.then_some(equipment.counter.per_revolution));
         let set_points = model.experiment().set_points.iter().filter(|s| s.mounting == m);
         set.extend(set_points.map(|s| s.omega));
-        of_truth.extend(mounting.plateaus().iter().map(|p| p.omega.abs()));
+        of_truth.extend(mounting.plateaus().iter().map(|(_, omega)| omega.abs()));
         all.push(reduced);
     }
     let speeds = MeasuredSpeed::of_all(&set, &all);
