@@ -100,15 +100,15 @@ impl Panel<'_> {
     fn status(&self, out: &mut String, now: f64) -> std::fmt::Result {
         let (live, words) = (self.live, self.words);
         let is_silent = live.is_silent(now);
-        let (class, text) = match live.status {
-            _ if is_silent => ("bad", words.silent),
-            LiveStatus::Following => ("good", words.following),
-            LiveStatus::Stopped => ("amber", words.stopped),
-            LiveStatus::Complete if live.acceptable == Some(false) => ("bad", words.complete),
-            LiveStatus::Complete => ("good", words.complete),
-            LiveStatus::Failed => ("bad", words.failed),
+        // The first word is the same in every language.
+        let (status, class, text) = match live.status {
+            _ if is_silent => ("silent", "bad", words.silent),
+            LiveStatus::Following => ("following", "good", words.following),
+            LiveStatus::Stopped => ("stopped", "amber", words.stopped),
+            LiveStatus::Complete if live.acceptable == Some(false) => ("complete", "bad", words.complete),
+            LiveStatus::Complete => ("complete", "good", words.complete),
+            LiveStatus::Failed => ("failed", "bad", words.failed),
         };
-        let status = status_word(live.status, is_silent);
         write!(
             out,
             "<section id=\"status\" class=\"banner {class}\" role=\"status\"><p data-value=\"{status}\">{text}"
@@ -229,17 +229,9 @@ impl Panel<'_> {
         fact(out, words.samples, &format!("<span id=\"samples\" data-value=\"{0}\">{0}</span>", record.samples))?;
         match record.clock_offset {
             Some((offset, uncertainty)) => {
-                let shown = uncertainty.map_or_else(
-                    || self.language.fixed(offset, 3),
-                    |u| {
-                        format!(
-                            "{} ± {}",
-                            self.language.fixed(offset, 3),
-                            self.language.number(&two_digits(expanded_of_normal(u)))
-                        )
-                    },
-                );
-                fact(out, words.clock_offset, &format!("{shown} {}", words.second))?;
+                let expanded = |u| format!(" ± {}", self.language.number(&two_digits(expanded_of_normal(u))));
+                let (offset, u) = (self.language.fixed(offset, 3), uncertainty.map(expanded).unwrap_or_default());
+                fact(out, words.clock_offset, &format!("{offset}{u} {}", words.second))?;
             }
             None => fact(out, words.clock_offset, words.no_clock)?,
         }
@@ -387,17 +379,6 @@ fn open(out: &mut String, id: &str, title: &str) -> std::fmt::Result {
 /// A fact; `value` is markup.
 fn fact(out: &mut String, name: &str, value: &str) -> std::fmt::Result {
     write!(out, "<div><dt>{name}</dt><dd>{value}</dd></div>")
-}
-
-/// One word for what the watch does, the same in every language.
-fn status_word(status: LiveStatus, is_silent: bool) -> &'static str {
-    match status {
-        _ if is_silent => "silent",
-        LiveStatus::Following => "following",
-        LiveStatus::Stopped => "stopped",
-        LiveStatus::Complete => "complete",
-        LiveStatus::Failed => "failed",
-    }
 }
 
 /// Hours and minutes of a time, UTC; the script writes those of the reader's clock.

@@ -1,7 +1,6 @@
 //! Which plateaus of a session folder have arrived while it is being filled.
 
 use std::collections::BTreeMap;
-use std::fmt::{self, Display, Formatter};
 use std::fs;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -58,15 +57,6 @@ enum Note {
     NotYet(String),
 }
 
-impl Display for Note {
-    fn fmt(&self, f: &mut Formatter) -> fmt::Result {
-        match self {
-            Self::WaitingFor(file) => write!(f, "waiting for {}", file.display()),
-            Self::NotYet(why) => write!(f, "not yet: {why}"),
-        }
-    }
-}
-
 /// What a record looks like from outside.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Look {
@@ -115,7 +105,10 @@ impl<'s> Watch<'s> {
 
     /// What is waited for, if something is.
     pub fn note(&self) -> Option<String> {
-        self.note.as_ref().map(Note::to_string)
+        Some(match self.note.as_ref()? {
+            Note::WaitingFor(file) => format!("waiting for {}", file.display()),
+            Note::NotYet(why) => format!("not yet: {why}"),
+        })
     }
 
     /// The file that is waited for, if the note is of one.
