@@ -29,7 +29,7 @@ pub fn main() -> Result<(), Box<dyn Error>> {
             follower.take(arrival)?;
             let now = follower.progress()?;
             let u = now.estimates[column].map_or("not determined".to_owned(), |(_, u)| format!("{u:.2e} s^2/m"));
-            println!("rank {}, G1_11: {u}, probability of the plateau {:.2}", now.rank, test.probability());
+            println!("rank {}, G1_11: {u}, probability of the plateau {:.2}", now.rank, test.probability);
         }
     }
     Ok(())

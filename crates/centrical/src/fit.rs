@@ -40,7 +40,6 @@ pub(crate) use calibration::Calibration;
 pub use convergence::Checkpoint;
 pub(crate) use data::Data;
 pub(crate) use estimates::{Fit, Termination};
-pub use filter::innovation::Innovation;
 pub use follower::{Arrival, Follower, Progress};
 pub(crate) use gain::Gain;
 pub(crate) use structure::Structure;

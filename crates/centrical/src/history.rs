@@ -3,7 +3,7 @@
 //! - [`Between`]: the component of variance between sessions, beside the uncertainty that each session states.
 //! - [`Series::evolution`]: level, slope, forecast, due date.
 //! - [`Series::step`]: a repair in place of a drift.
-//! - [`Sameness`]: all parameters together, with their full covariances.
+//! - [`Estimates::sameness`](crate::uncertainty::Estimates::sameness): all parameters together, with their full covariances.
 //! - [`UnitTrend`], [`UnitDistance`], [`Capability`], [`BatchTest`]: units beside each other.
 //! - [`StationTest`]: a machine over its sessions.
 //! - [`Control`]: control charts.
@@ -33,5 +33,5 @@ pub use outlying::UnitDistance;
 pub use quantiles::Quantiles;
 pub use series::{Point, Series};
 pub use station::{Reading, StationTest};
-pub use together::{FarthestSession, Sameness};
+pub use together::FarthestSession;
 pub use units::{BatchTest, Capability, Index, UnitTrend};

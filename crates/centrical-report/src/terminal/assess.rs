@@ -144,9 +144,9 @@ fn largest_residuals(screen: &mut Screen, experiment: &Experiment, validity: &Va
     let numbers = ["f1", "f2", "f3", "leverage", "probability"];
     let mut table = Table::new(1, &[(Align::Left, &[""]), (Align::Right, &numbers), (Align::Words, &[""])]);
     let mut worst: Vec<_> = validity.plateaus.iter().collect();
-    worst.sort_by(|a, b| a.prediction.probability.total_cmp(&b.prediction.probability));
+    worst.sort_by(|a, b| a.test.probability.total_cmp(&b.test.probability));
     for check in worst.iter().take(5) {
-        let family_wise = (check.prediction.probability * validity.plateaus.len() as f64).min(1.0);
+        let family_wise = (check.test.probability * validity.plateaus.len() as f64).min(1.0);
         let r = check.standardised;
         let residuals = [r.x, r.y, r.z].map(|r| unsigned_zero(format!("{r:.2}")));
         let mark = if Level::Reported.is_passed_by(family_wise) { "OUTLYING" } else { "" };

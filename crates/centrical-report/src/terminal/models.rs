@@ -91,7 +91,7 @@ fn candidates(screen: &mut Screen, selection: &ModelSelection) {
         } else {
             format!("{}/{}", rival.rank, rival.unknowns)
         };
-        let test = rival.against.as_ref().map_or(String::new(), |test| match test.probability {
+        let test = rival.against.map_or(String::new(), |(_, test)| match test.probability {
             p if p > 0.0 => probability(p),
             _ => "<1e-300".to_owned(),
         });
@@ -162,11 +162,11 @@ fn reasons(selection: &ModelSelection) -> Vec<String> {
             ),
         );
     }
-    if let Some(test) = &best.against {
+    if let Some((nested, test)) = best.against {
         reasons.push(format!(
             "it has {} over \"{}\"; so large a gain comes by chance with a probability of {}",
-            counted(test.further, "further unknown"),
-            selection.candidates[test.nested].name,
+            counted(test.degrees_of_freedom, "further unknown"),
+            selection.candidates[nested].name,
             probability(test.probability)
         ));
     }

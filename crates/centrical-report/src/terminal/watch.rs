@@ -5,9 +5,8 @@ use std::time::Duration;
 
 use centrical::MeasurementModel;
 use centrical::fit::filter::Lifetimes;
-use centrical_session::{
-    GroupProgress, InnovationSummary, PlateauName, Session, WatchEvent, WatchProgress, WatchedPlateau, rpm,
-};
+use centrical::uncertainty::Test;
+use centrical_session::{GroupProgress, PlateauName, Session, WatchEvent, WatchProgress, WatchedPlateau, rpm};
 
 use super::screen::Screen;
 use super::table::{Align, Cell, Table};
@@ -97,7 +96,7 @@ pub fn alarm_text(event: &WatchEvent) -> Option<(AlarmKind, String)> {
         WatchEvent::Plateau(progress) => {
             let last = progress.plateaus.last().filter(|last| last.alarm)?;
             let PlateauName { mounting, plateau } = PlateauName::of(progress.session, last.set_point);
-            let probability = last.innovation().probability();
+            let probability = last.innovation().probability;
             let found = format!("plateau {mounting}:{plateau} does not fit: a chance of {probability:.2e}");
             Some((AlarmKind::Plateau, found))
         }
@@ -127,12 +126,12 @@ fn label(session: &Session, set_point: usize) -> String {
 
 fn outcome(session: &Session, plateau: &WatchedPlateau) -> String {
     let WatchedPlateau { set_point, alarm, held_out, .. } = plateau;
-    let InnovationSummary { squared, degrees_of_freedom, probability } = plateau.innovation().into();
+    let Test { statistic, degrees_of_freedom, probability } = plateau.innovation();
     let plateau = label(session, *set_point);
     let tested = match degrees_of_freedom {
         0 => "nothing to test it by yet".to_owned(),
         _ => format!(
-            "normalised innovation {squared:.2} with {} of freedom, a chance of {probability:.2e}",
+            "normalised innovation {statistic:.2} with {} of freedom, a chance of {probability:.2e}",
             counted(degrees_of_freedom, "degree")
         ),
     };

@@ -252,7 +252,7 @@ impl AssessedPlateau {
             index: plateau - 1,
             standardised: check.standardised.into(),
             leverage: check.leverage,
-            probability: check.prediction.probability,
+            probability: check.test.probability,
         }
     }
 }

@@ -113,10 +113,10 @@ impl CandidateSummary {
             traced: candidate.traced,
             bic: candidate.bic,
             hold_out_score: json::finite(candidate.hold_out_score),
-            nested_test: candidate.against.map(|test| NestedTestSummary {
-                nested: test.nested,
-                f: json::finite(test.f),
-                further_unknowns: test.further,
+            nested_test: candidate.against.map(|(nested, test)| NestedTestSummary {
+                nested,
+                f: json::finite(test.statistic),
+                further_unknowns: test.degrees_of_freedom,
                 probability: test.probability,
             }),
         }

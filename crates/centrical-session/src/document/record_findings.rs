@@ -1,7 +1,7 @@
 //! What records show beside their means, in the experiment file of a session that is reduced to these: JSON in
 //! `record_findings`.
 
-use centrical::uncertainty::chi_squared_tail;
+use centrical::uncertainty::Test;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
@@ -56,11 +56,13 @@ impl RecordFindings {
 
     /// A probability that is not that of its chi^2.
     fn contradiction(&self) -> Option<(String, String)> {
-        let of_drift = self
-            .drift
+        let of_drift = self.drift.as_ref().map(|drift| {
+            ("drift", drift.probability, Test::chi_squared(drift.chi_squared, drift.degrees_of_freedom).probability)
+        });
+        let of_tilt = self
+            .tilt
             .as_ref()
-            .map(|drift| ("drift", drift.probability, chi_squared_tail(drift.chi_squared, drift.degrees_of_freedom)));
-        let of_tilt = self.tilt.as_ref().map(|tilt| ("tilt", tilt.probability, chi_squared_tail(tilt.chi_squared, 1)));
+            .map(|tilt| ("tilt", tilt.probability, Test::chi_squared(tilt.chi_squared, 1).probability));
         let is_other = |(_, found, expected): &(&str, f64, f64)| (found - expected).abs() > SAME_PROBABILITY;
         let (name, found, expected) = of_drift.into_iter().chain(of_tilt).find(is_other)?;
         Some((format!("{KEY}.{name}.probability = {found:e}"), format!("{expected:e}, that of its chi_squared")))

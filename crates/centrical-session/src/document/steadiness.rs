@@ -1,10 +1,9 @@
 //! How steady the readings were: over a plateau, over the session, over a revolution; and what was left out.
 
 use centrical::reduction::LeftOut;
-use centrical::uncertainty::{
-    Creep, Level, OncePerRevolution, PlateauDrift, Repeat, SessionDrift, Slope, TiltComparison, chi_squared_tail,
-};
+use centrical::uncertainty::{Level, OncePerRevolution, Pattern, Slope, Test, TiltComparison};
 use centrical::{Calibration, Experiment, FitError, Observation, SetPoint};
+use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 use crate::experiment::PlateauName;
@@ -235,7 +234,7 @@ impl TiltSummary {
 impl DriftSummary {
     /// What the slopes say of a drift over the plateaus.
     pub fn plateau_verdict(&self) -> PlateauDriftVerdict {
-        let beyond_speed = |chi_squared| chi_squared_tail(chi_squared, self.degrees_of_freedom);
+        let beyond_speed = |chi_squared| Test::chi_squared(chi_squared, self.degrees_of_freedom).probability;
         if !Level::Real.is_passed_by(self.probability) {
             PlateauDriftVerdict::NotSeen
         } else if Level::Real.is_passed_by(self.beyond_speed.map_or(self.probability, beyond_speed)) {
@@ -251,7 +250,9 @@ impl DriftSummary {
         let any = |level: Level, probability: &dyn Fn(&SessionTrend) -> f64| {
             self.over_session.iter().any(|trend| level.is_passed_by(tests * probability(trend)))
         };
-        let stated = |trend: &SessionTrend| chi_squared_tail((trend.change / trend.standard_uncertainty).powi(2), 1);
+        let stated = |trend: &SessionTrend| {
+            Test::chi_squared((trend.change / trend.standard_uncertainty).powi(2), 1).probability
+        };
         if any(Level::Real, &|trend| trend.probability) {
             SessionDriftVerdict::Seen
         } else if any(Level::Real, &stated) {
@@ -283,27 +284,27 @@ impl DriftSummary {
         };
         let slopes = reduced.plateaus.iter().zip(&experiment.set_points).map(slope);
         let Some(slopes) = slopes.collect::<Option<Vec<Slope>>>() else { return Ok(None) };
-        let drift = PlateauDrift::of(&slopes);
+        let (mean, drift) = Slope::together(&slopes);
         // Telemetry may repeat the set speed: what the stated uncertainty of the speed explains is no drift, whatever telemetry shows.
-        let by_telemetry = PlateauDrift::of(&beyond_speed(calibration, reduced, &slopes, true)).chi_squared;
-        let by_statement = PlateauDrift::of(&beyond_speed(calibration, reduced, &slopes, false)).chi_squared;
-        let trends = calibration.drift_over_session()?;
+        let beyond = |counts| Slope::together(&beyond_speed(calibration, reduced, &slopes, counts)).1.statistic;
         Ok(Some(Self {
-            slope: drift.mean.slope.into(),
-            slope_uncertainty: drift.mean.standard_uncertainty.into(),
-            chi_squared: drift.chi_squared,
+            slope: mean.slope.into(),
+            slope_uncertainty: mean.standard_uncertainty.into(),
+            chi_squared: drift.statistic,
             degrees_of_freedom: drift.degrees_of_freedom,
             probability: drift.probability,
-            beyond_speed: Some(by_telemetry.min(by_statement)),
+            beyond_speed: Some(beyond(true).min(beyond(false))),
             creep: creep(experiment, reduced, &slopes),
-            over_session: trends.into_iter().map(SessionTrend::from).collect(),
+            over_session: calibration.drift_over_session()?.iter().map(SessionTrend::from).collect(),
             repeats: repeated(calibration, reduced),
         }))
     }
 }
 
-impl From<SessionDrift> for SessionTrend {
-    fn from(SessionDrift { axis, change, standard_uncertainty, probability }: SessionDrift) -> Self {
+impl From<&Pattern> for SessionTrend {
+    fn from(&Pattern { axis, amplitude, standard_uncertainty, probability, .. }: &Pattern) -> Self {
+        // The amplitude is half of the way from the first plateau to the last.
+        let [change, standard_uncertainty] = [amplitude, standard_uncertainty].map(|half| 2.0 * half);
         Self { axis: axis + 1, change, standard_uncertainty, probability }
     }
 }
@@ -318,8 +319,8 @@ fn creep(experiment: &Experiment, reduced: &Reduced, slopes: &[Slope]) -> Option
         follows.then(|| (slopes[n], plateau.mean, plateau.mean - before.mean))
     };
     let rests: Vec<_> = (1..slopes.len()).filter_map(after).collect();
-    let Creep { rate, standard_uncertainty, probability } = Creep::of(&rests)?;
-    Some(CreepSummary { rate, standard_uncertainty, probability })
+    let ([rate, standard_uncertainty], test) = Slope::creep(&rests)?;
+    Some(CreepSummary { rate, standard_uncertainty, probability: test.probability })
 }
 
 /// The slopes of all plateaus, less what their speeds explain as they are stated, and as telemetry shows them where it `counts`.
@@ -343,12 +344,12 @@ fn repeated(calibration: &Calibration, reduced: &Reduced) -> Vec<RepeatedPlateau
     let set_points = &model.experiment().set_points;
     let plateaus = reduced.plateaus.iter().enumerate();
     let plateaus: Vec<Observation> = plateaus.map(|(set_point, plateau)| plateau.observation(set_point)).collect();
-    let summary = |repeat: Repeat| RepeatedPlateau {
-        mounting: PlateauName::among(set_points, repeat.set_points[0]).mounting,
-        indices: repeat.set_points.map(|set_point| PlateauName::among(set_points, set_point).plateau - 1),
-        difference: repeat.difference.into(),
-        chi_squared: repeat.chi_squared,
-        probability: repeat.probability,
+    let summary = |(pair, difference, test): ([usize; 2], Vector3<f64>, Test)| RepeatedPlateau {
+        mounting: PlateauName::among(set_points, pair[0]).mounting,
+        indices: pair.map(|set_point| PlateauName::among(set_points, set_point).plateau - 1),
+        difference: difference.into(),
+        chi_squared: test.statistic,
+        probability: test.probability,
     };
-    Repeat::all(model, calibration.fit().state(), &plateaus).into_iter().map(summary).collect()
+    model.repeats(calibration.fit().state(), &plateaus).into_iter().map(summary).collect()
 }

@@ -34,8 +34,8 @@ pub fn assess(session: &Session, request: &AssessmentRequest, progress: OnProgre
     let all = Data::new(&model, reduced.observations()).map_err(failed)?;
     let whole = Calibration::exact(&all).map_err(failed)?;
     let cleaned = request.without_outliers.map(|alpha| all.without_outliers(alpha)).transpose().map_err(failed)?;
-    let without = cleaned.as_ref().map(|cleaned| Calibration::exact(&cleaned.data)).transpose().map_err(failed)?;
-    let left_out = cleaned.as_ref().map_or(&[][..], |cleaned| &cleaned.left_out);
+    let without = cleaned.as_ref().map(|(data, _)| Calibration::exact(data)).transpose().map_err(failed)?;
+    let left_out = cleaned.as_ref().map_or(&[][..], |(_, left_out)| left_out);
     let used = without.as_ref().unwrap_or(&whole);
     reduced.held_out = left_out.iter().map(|(set_point, _)| *set_point).collect();
     let result = as_result(used, &session, &reduced, progress)?;

@@ -103,9 +103,9 @@ fn fewer(
     let model = reduced.model(session)?;
     let failed = |source| Error::fit(&session.file, source);
     let data = Data::new(&model, reduced.observations()).map_err(failed)?;
-    let cleaned = data.without_most_outlying(alpha, count - 1, &|()| progress(0)).map_err(failed)?;
-    let validity = Calibration::exact(&cleaned.data).and_then(|calibration| calibration.validity()).map_err(failed)?;
-    let singled_out = cleaned.left_out.into_iter().map(|(set_point, _)| set_point).collect();
+    let (data, left_out) = data.without_most_outlying(alpha, count - 1, &|()| progress(0)).map_err(failed)?;
+    let validity = Calibration::exact(&data).and_then(|calibration| calibration.validity()).map_err(failed)?;
+    let singled_out = left_out.into_iter().map(|(set_point, _)| set_point).collect();
     Ok(validity.outlier(alpha).is_none().then_some(singled_out))
 }
 

@@ -12,7 +12,7 @@ use nalgebra::{DVector, Matrix3};
 
 use super::batch::HALVING_LIMIT;
 use super::data::{Data, Design};
-use super::filter::innovation::{Innovation, Unexplained};
+use super::filter::innovation::Unexplained;
 use super::global::{Attitude, PlateauEquations};
 use super::linearised::Linearised;
 use super::past::Past;
@@ -20,6 +20,7 @@ use super::structure::{Held, Hold};
 use crate::linalg::least_squares::LeastSquares;
 use crate::model::{FitError, Kind, MeasurementModel, Observation};
 use crate::observability::Observability;
+use crate::statistics::Test;
 
 /// A point is close enough when the last step was below this many standard uncertainties: what the step after it would
 /// change is of the square of it.
@@ -60,7 +61,7 @@ pub struct Arrival<'m> {
     ///
     /// As in a fit, rank is decided on `H`, and what `H` does not see is held by [`Parameter::NULL_HOLD`] typical magnitudes: the exact
     /// model has second-order traces of it, which would pass for something new in every plateau.
-    pub innovation: Innovation,
+    pub innovation: Test,
     observation: Observation,
     point: DVector<f64>,
     /// The plateaus before it, where they had to be linearised anew.

@@ -5,21 +5,8 @@ use std::ops::Range;
 use nalgebra::{DMatrix, DVector};
 
 use crate::linalg::least_squares::LeastSquares;
-use crate::statistics::{chi_squared_tail, f_tail};
+use crate::statistics::{Test, chi_squared_tail, f_tail};
 use crate::uncertainty::Estimates;
-
-/// Whether the unit was the same in all sessions.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Sameness {
-    /// `sum_i (x_i - mu - B_i s)^T C_i^-1 (x_i - mu - B_i s) + |s|^2` at the best common `mu` and shared errors `s`.
-    pub chi_squared: f64,
-    /// Estimates of all sessions less the quantities: `p (k - 1)` where each session has all.
-    pub degrees_of_freedom: usize,
-    /// Probability of so large a chi^2 if the sessions differ by the stated errors alone.
-    pub probability: f64,
-    /// The session that deviates most from the others, of three or more.
-    pub farthest: Option<FarthestSession>,
-}
 
 /// A session held against the others.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -35,14 +22,19 @@ pub struct FarthestSession {
     pub probability_by_scatter: f64,
 }
 
-impl Sameness {
-    /// The joint test of sessions; `None` below two sessions, where all quantities are of one session each, or where a covariance is not positive
+impl Estimates {
+    /// Whether the unit was the same in all sessions, by `sum_i (x_i - mu - B_i s)^T C_i^-1 (x_i - mu - B_i s) + |s|^2` at the best common `mu` and
+    /// shared errors `s`; with the session that deviates most from the others, of three or more. `None` below two sessions, where all quantities are of one session each, or where a covariance is not positive
     /// definite.
     ///
     /// `quantities` has for each session the numbers of the quantities that its values are of, `0..p`, each of two sessions or more. `shared` has a
     /// matrix for each session: the changes of its values by errors that some sessions share, a column for each of `m` independent errors at one
     /// standard uncertainty, zero where a session does not have it. They are unknowns, each `0 +- 1`.
-    pub fn of(sessions: &[Estimates], quantities: &[Vec<usize>], shared: &[DMatrix<f64>]) -> Option<Sameness> {
+    pub fn sameness(
+        sessions: &[Estimates],
+        quantities: &[Vec<usize>],
+        shared: &[DMatrix<f64>],
+    ) -> Option<(Test, Option<FarthestSession>)> {
         let p = 1 + *quantities.iter().flatten().max()?;
         let m = shared.first().map_or(0, DMatrix::ncols);
         let blocks = blocks(sessions);
@@ -71,7 +63,6 @@ impl Sameness {
         let degrees_of_freedom = rows.checked_sub(p).filter(|rest| *rest > 0)?;
         let equations = LeastSquares::new(design, sizes.resize_vertically(p + m, 1.0));
         let chi_squared = equations.redundant(&values).norm_squared();
-        let probability = chi_squared_tail(chi_squared, degrees_of_freedom);
         // Of two sessions each is as far from the other.
         let farthest = if sessions.len() > 2 {
             farthest(&equations, &values.rows(0, rows).into_owned(), &blocks, degrees_of_freedom)
@@ -88,7 +79,7 @@ impl Sameness {
                 probability_by_scatter: any(f_tail(fall * of_others as f64 / rest, 1.0, of_others as f64)),
             }
         });
-        Some(Sameness { chi_squared, degrees_of_freedom, probability, farthest })
+        Some((Test::chi_squared(chi_squared, degrees_of_freedom), farthest))
     }
 }
 

@@ -4,6 +4,29 @@ use statrs::distribution::{ChiSquared, ContinuousCDF};
 use statrs::function::beta::beta_reg;
 use statrs::function::gamma::gamma_ur;
 
+/// A statistic, and what chance makes of it if nothing but chance is at work.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Test {
+    /// chi^2, or an F statistic.
+    pub statistic: f64,
+    /// Degrees of freedom of chi^2, or those that F sets against the scatter.
+    pub degrees_of_freedom: usize,
+    /// Probability of so large a statistic by chance; 1 without degrees of freedom.
+    pub probability: f64,
+}
+
+impl Test {
+    /// The test of a chi^2, which is 0 as a probability where it is not a finite number.
+    pub fn chi_squared(statistic: f64, degrees_of_freedom: usize) -> Self {
+        Self { statistic, degrees_of_freedom, probability: chi_squared_tail(statistic, degrees_of_freedom) }
+    }
+
+    /// Whether it stands out of `count` independent tests, when these do by chance with the probability `false_alarm` (Sidak).
+    pub fn is_alarm(&self, false_alarm: f64, count: usize) -> bool {
+        sidak(self.probability, count.max(1) as f64) < false_alarm
+    }
+}
+
 /// Probability that chi^2 with `nu` degrees of freedom exceeds `chi_squared`; 1 without any degree, 0 if it is not a
 /// finite number.
 pub fn chi_squared_tail(chi_squared: f64, nu: usize) -> f64 {

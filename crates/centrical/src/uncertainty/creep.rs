@@ -9,7 +9,7 @@
 use nalgebra::{DMatrix, DVector, Vector3};
 
 use super::drift::Slope;
-use crate::statistics::f_tail;
+use crate::statistics::{Test, f_tail};
 
 /// A drift of three biases, and the creep.
 const TERMS: usize = 4;
@@ -17,21 +17,12 @@ const TERMS: usize = 4;
 /// A column shorter than this part of what it was is a combination of those before it.
 const DEPENDENT: f64 = 1e-3;
 
-/// Slopes of rests as they follow the change of the reading before them.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Creep {
-    /// Slope over the change [1/s]: positive where readings go on in the direction of the change.
-    pub rate: f64,
-    /// Its standard uncertainty, by the noise within rests or the scatter of the slopes, whichever is larger [1/s].
-    pub standard_uncertainty: f64,
-    /// Probability of so large a rate by chance (F test).
-    pub probability: f64,
-}
-
-impl Creep {
-    /// Of rests that follow another one in their record: slope, mean reading, and change of the mean since the rest before, [m/s^3] and
-    /// [m/s^2]. `None` where they are too few, or drift and creep are one.
-    pub fn of(rests: &[(Slope, Vector3<f64>, Vector3<f64>)]) -> Option<Self> {
+impl Slope {
+    /// Creep of rests that follow another one in their record, given their slope, mean reading, and change of the mean since the rest before,
+    /// [m/s^3] and [m/s^2]: slope over the change [1/s], positive where readings go on in the direction of the change; its standard uncertainty,
+    /// by the noise within rests or the scatter of the slopes, whichever is larger [1/s]; and its F test. `None` where the rests are too few, or
+    /// drift and creep are one.
+    pub fn creep(rests: &[(Slope, Vector3<f64>, Vector3<f64>)]) -> Option<([f64; 2], Test)> {
         let degrees_of_freedom = rests.len().checked_sub(TERMS).filter(|count| *count > 0)?;
         let mut design = DMatrix::zeros(rests.len(), TERMS);
         let mut slopes = DVector::zeros(rests.len());
@@ -50,10 +41,9 @@ impl Creep {
         let scatter = (remaining / degrees_of_freedom as f64).max(1.0);
         let along_rate = slopes[TERMS - 1];
         let is_seen = along_rate.is_finite() && of_rate.abs() > DEPENDENT * whole;
-        is_seen.then(|| Self {
-            rate: along_rate / of_rate,
-            standard_uncertainty: scatter.sqrt() / of_rate.abs(),
-            probability: f_tail(along_rate * along_rate / scatter, 1.0, degrees_of_freedom as f64),
-        })
+        let statistic = along_rate * along_rate / scatter;
+        let probability = f_tail(statistic, 1.0, degrees_of_freedom as f64);
+        let test = Test { statistic, degrees_of_freedom: 1, probability };
+        is_seen.then(|| ([along_rate / of_rate, scatter.sqrt() / of_rate.abs()], test))
     }
 }

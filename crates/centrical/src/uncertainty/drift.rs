@@ -2,10 +2,10 @@
 
 use nalgebra::Vector3;
 
-use super::pattern::Trend;
+use super::pattern::{Pattern, Trend};
 use crate::fit::{Calibration, Termination};
 use crate::model::FitError;
-use crate::statistics::chi_squared_tail;
+use crate::statistics::Test;
 
 /// Slope of the readings over one plateau.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -46,9 +46,7 @@ impl Slope {
             along: self.along,
         }
     }
-}
 
-impl Slope {
     /// Relative slope of the speed over a plateau of a duration [s], and its standard uncertainty [1/s]: the speed may run from the middle to
     /// either end by its relative standard uncertainty, unless its `measured` slope says better (the posterior of both).
     pub fn of_speed(uncertainty: f64, duration: f64, measured: Option<[f64; 2]>) -> [f64; 2] {
@@ -57,24 +55,9 @@ impl Slope {
         let whole = stated.hypot(u);
         [slope * (stated / whole).powi(2), stated * u / whole]
     }
-}
 
-/// The slopes of all plateaus together.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct PlateauDrift {
-    /// Weighted mean of the slopes [m/s^3].
-    pub mean: Slope,
-    /// Sum of the squared slopes over their variances.
-    pub chi_squared: f64,
-    /// Number of slopes.
-    pub degrees_of_freedom: usize,
-    /// Probability of so large a chi^2 without any drift.
-    pub probability: f64,
-}
-
-impl PlateauDrift {
-    /// Drift of plateaus with these slopes.
-    pub fn of(slopes: &[Slope]) -> Self {
+    /// Weighted mean of the slopes of all plateaus, and the test of their squares over their variances: whether anything drifts.
+    pub fn together(slopes: &[Slope]) -> (Slope, Test) {
         let (mut weights, mut sums, mut chi_squared) = (Vector3::zeros(), Vector3::zeros(), 0.0);
         let mut degrees_of_freedom = 0;
         for (slope, u, direction) in slopes.iter().flat_map(Slope::parts) {
@@ -84,51 +67,25 @@ impl PlateauDrift {
             chi_squared += (slope / u).powi(2);
             degrees_of_freedom += 1;
         }
-        let mean = Slope {
-            slope: sums.component_div(&weights),
-            standard_uncertainty: weights.map(|weight| 1.0 / weight.sqrt()),
-            along: None,
-        };
-        let probability = chi_squared_tail(chi_squared, degrees_of_freedom);
-        Self { mean, chi_squared, degrees_of_freedom, probability }
+        let slope = sums.component_div(&weights);
+        let mean = Slope { slope, standard_uncertainty: weights.map(|weight| 1.0 / weight.sqrt()), along: None };
+        (mean, Test::chi_squared(chi_squared, degrees_of_freedom))
     }
 }
 
-/// Change of one newtonometer's residuals over the session.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct SessionDrift {
-    /// Newtonometer, 0 to 2.
-    pub axis: usize,
-    /// Change from the first to the last plateau, as one more unknown of the fit [m/s^2].
-    pub change: f64,
-    /// Its standard uncertainty [m/s^2].
-    pub standard_uncertainty: f64,
-    /// Probability of so large a change by chance.
-    pub probability: f64,
-}
-
 impl Calibration<'_> {
-    /// Trends of the residuals with the order of the plateaus, by newtonometer. Empty where the unknowns follow them, and for
-    /// a linear fit, which leaves its second-order terms in the residuals.
+    /// Trends of the residuals with the order of the plateaus, by newtonometer: amplitudes over half of the way from the first plateau to the
+    /// last. Empty where the unknowns follow them, and for a linear fit, which leaves its second-order terms in the residuals.
     ///
     /// # Errors
     /// [`FitError`] when numbers overflow.
-    pub fn drift_over_session(&self) -> Result<Vec<SessionDrift>, FitError> {
+    pub fn drift_over_session(&self) -> Result<Vec<Pattern>, FitError> {
         if self.fit().termination == Termination::Linear {
             return Ok(Vec::new());
         }
-        let patterns = self.patterns_of(&[Trend::Time])?;
-        let mut trends: Vec<SessionDrift> = (patterns.iter())
-            .map(|pattern| SessionDrift {
-                axis: pattern.axis,
-                // The pattern's largest entry is half of the way from the first plateau to the last.
-                change: 2.0 * pattern.amplitude,
-                standard_uncertainty: 2.0 * pattern.standard_uncertainty,
-                probability: pattern.probability,
-            })
-            .collect();
-        trends.sort_by_key(|trend| trend.axis);
-        Ok(trends)
+        let mut patterns = self.patterns_of(&[Trend::Time])?;
+        patterns.sort_by_key(|pattern| pattern.axis);
+        Ok(patterns)
     }
 }
 
@@ -142,7 +99,7 @@ mod tests {
     fn the_slope_of_the_speed_is_measured_or_stated() {
         let by_log_speed = Vector3::new(2e3, 0.0, 0.0);
         let slope = Slope { slope: by_log_speed * 1e-6, standard_uncertainty: Vector3::repeat(1e-4), along: None };
-        let left = |speed| PlateauDrift::of(&[slope.beyond_speed(&by_log_speed, speed)]).chi_squared;
+        let left = |speed| Slope::together(&[slope.beyond_speed(&by_log_speed, speed)]).1.statistic;
         let [exact, stated, measured] = [(0.0, Some([1e-6, 1e-9])), (1e-5, None), (1e-5, Some([1e-6, 1e-9]))]
             .map(|(u, m)| Slope::of_speed(u, 10.0, m));
         assert!(exact == [0.0, 0.0] && stated[0] == 0.0 && (stated[1] - 2e-6).abs() < 1e-18, "{stated:?}");

@@ -14,7 +14,7 @@ use super::verdict::Level;
 use crate::fit::{Calibration, Data, Termination};
 use crate::model::{ErrorModel, FitError, Kind, MeasurementModel, Observation, Parameter, Rival};
 use crate::progress::{OnProgress, advance};
-use crate::statistics::{chi_squared_tail, f_tail};
+use crate::statistics::{Test, chi_squared_tail, f_tail};
 
 /// A model that could be meant.
 #[derive(Debug, Clone, PartialEq)]
@@ -48,23 +48,11 @@ pub struct FittedCandidate {
     pub bic: f64,
     /// Combinations beyond the rank that second-order traces determine at the estimate, in part or in whole: the fit follows them too.
     pub traced: f64,
-    /// Score of the prediction of each mounting from the others ([`Validity::hold_out_score`]): the lower the better.
+    /// Score of the prediction of each mounting from the others ([`super::Validity::hold_out_score`]): the lower the better.
     pub hold_out_score: f64,
-    /// Test against the largest candidate nested in it, if there is one.
-    pub against: Option<NestedTest>,
-}
-
-/// F test of a model against one nested in it.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct NestedTest {
-    /// Index of the nested candidate.
-    pub nested: usize,
-    /// F statistic of the further unknowns.
-    pub f: f64,
-    /// Number of further unknowns determined.
-    pub further: usize,
-    /// Probability of so large a statistic if they are all zero.
-    pub probability: f64,
+    /// Index of the largest candidate nested in it, if there is one, and the F test of the further unknowns that are determined: whether they
+    /// are all zero.
+    pub against: Option<(usize, Test)>,
 }
 
 /// The candidates and what follows.
@@ -223,7 +211,7 @@ fn conclude(all: &[(&Candidate, Calibration)]) -> Result<ModelSelection, FitErro
     let converged = || (0..fitted.len()).filter(|&n| fitted[n].converged);
     // Where no model fits, the stated weights make every gain large. The F test compares it with the chi^2 of the richer model.
     let is_gain = |n: &usize| {
-        let by_chance = fitted[*n].against.as_ref().map_or(1.0, |test| test.probability);
+        let by_chance = fitted[*n].against.map_or(1.0, |(_, test)| test.probability);
         fitted[*n].rivals.is_empty() || Level::Reported.is_passed_by(by_chance)
     };
     let recommended =
@@ -247,7 +235,7 @@ fn candidate_fitted(candidate: &Candidate, calibration: &Calibration) -> Result<
         degrees_of_freedom: fit.degrees_of_freedom,
         bic: bic(calibration, traced),
         traced,
-        hold_out_score: calibration.validity()?.hold_out_score(),
+        hold_out_score: calibration.validity()?.hold_out_score,
         against: None,
     })
 }
@@ -289,7 +277,7 @@ fn with_further_unknowns<'f, 'c>(
 }
 
 /// Test of candidate `n` against the largest one nested in it that determines less; `None` where no degree of freedom remains for it.
-fn nested_test(candidates: &[&Candidate], fitted: &[FittedCandidate], n: usize) -> Option<NestedTest> {
+fn nested_test(candidates: &[&Candidate], fitted: &[FittedCandidate], n: usize) -> Option<(usize, Test)> {
     let determines_less = |m: &usize| fitted[*m].rank < fitted[n].rank;
     let nested = nested_in(candidates, n).into_iter().filter(determines_less).max_by_key(|&m| fitted[m].rank)?;
     let (simple, rich) = (&fitted[nested], &fitted[n]);
@@ -297,8 +285,8 @@ fn nested_test(candidates: &[&Candidate], fitted: &[FittedCandidate], n: usize) 
     // Counted by the rank alone, what traces of lost combinations explain by chance would pass for a gain.
     let followed = further as f64 + (rich.traced - simple.traced).max(0.0);
     let left = Some(rich.degrees_of_freedom as f64 - rich.traced).filter(|left| *left > 0.0)?;
-    let f = ((simple.chi_squared - rich.chi_squared) / followed) / (rich.chi_squared / left);
-    Some(NestedTest { nested, f, further, probability: f_tail(f, followed, left) })
+    let statistic = ((simple.chi_squared - rich.chi_squared) / followed) / (rich.chi_squared / left);
+    Some((nested, Test { statistic, degrees_of_freedom: further, probability: f_tail(statistic, followed, left) }))
 }
 
 /// The calibration with the recommended model.

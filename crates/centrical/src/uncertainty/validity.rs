@@ -14,7 +14,7 @@ use super::rivals::chance_of_explaining;
 use crate::fit::{Calibration, Data};
 use crate::model::{FitError, Observation};
 use crate::progress::{OnProgress, advance, unwatched};
-use crate::statistics::chi_squared_tail;
+use crate::statistics::{Test, chi_squared_tail};
 
 /// A share of a reading below this is rounding: the reading is not redundant, nothing checks it.
 const REDUNDANT: f64 = 1e-8;
@@ -32,8 +32,15 @@ pub struct Validity {
     pub probability: f64,
     /// By observation.
     pub plateaus: Vec<PlateauCheck>,
-    /// Each mounting that has observations, by its index, and how well the others predict it.
-    pub mountings: Vec<(usize, LeftOutPrediction)>,
+    /// Each mounting that has observations, by its index, and the test of its prediction from the others, as for a plateau.
+    pub mountings: Vec<(usize, Test)>,
+    /// Mean score per reading when each mounting is predicted from all others: 1 and a little more for a true model, more for one that lacks
+    /// a term or has too many.
+    ///
+    /// The score of a mounting is `-2 ln` of the density of the prediction at what was read, less that constant which all models share: sum over
+    /// the readings of squared difference over variance plus `ln` of the variance, in units of the noise. The lower the better: predictions
+    /// that are wrong cost, and those that say little.
+    pub hold_out_score: f64,
 }
 
 /// The check of one plateau.
@@ -45,32 +52,9 @@ pub struct PlateauCheck {
     pub standardised: Vector3<f64>,
     /// Part of its three readings that the fit follows, 0 to 1.
     pub leverage: f64,
-    /// How well the others predict it.
-    pub prediction: LeftOutPrediction,
-}
-
-/// A block of readings against its prediction from all other readings.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct LeftOutPrediction {
-    /// Fall of chi^2 without the block.
-    pub statistic: f64,
-    /// Readings of the block that the others predict at all.
-    pub degrees_of_freedom: usize,
-    /// `-2 ln` of the density of the prediction at what was read, less that constant which all models share: sum over
-    /// the readings of squared difference over variance plus `ln` of the variance, in units of the noise. The lower the
-    /// better: predictions that are wrong cost, and those that say little.
-    pub score: f64,
-    /// Probability of so large a statistic by chance, by what is stated and by the scatter of the others; 1 when nothing is redundant.
-    pub probability: f64,
-}
-
-/// Data without outlying plateaus.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Cleaned<'m> {
-    /// The data that remain.
-    pub data: Data<'m>,
-    /// Set points left out, the most outlying first, each with its probability at the time.
-    pub left_out: Vec<(usize, f64)>,
+    /// Test of its prediction from the others: fall of chi^2 without it, the readings of it that the others predict at all, and the probability
+    /// by what is stated and by the scatter of the others.
+    pub test: Test,
 }
 
 impl Calibration<'_> {
@@ -89,14 +73,17 @@ impl Calibration<'_> {
             degrees_of_freedom: fit.degrees_of_freedom,
         };
         let mounting_of = |n: usize| experiment.set_points[observations[n].set_point].mounting;
-        let mountings = (0..experiment.mountings.len()).filter_map(|mounting| {
+        let predicted = (0..experiment.mountings.len()).filter_map(|mounting| {
             let members: Vec<usize> = (0..observations.len()).filter(|&n| mounting_of(n) == mounting).collect();
             (!members.is_empty()).then(|| (mounting, blocks.predict(&members)))
         });
+        let predicted: Vec<(usize, (Test, f64))> = predicted.collect();
+        let score: f64 = predicted.iter().map(|(_, (_, score))| score).sum();
         Ok(Validity {
             probability: chi_squared_tail(fit.chi_squared, fit.degrees_of_freedom),
             plateaus: (0..observations.len()).map(|n| blocks.plateau(n, observations[n].set_point)).collect(),
-            mountings: mountings.collect(),
+            mountings: predicted.into_iter().map(|(mounting, (test, _))| (mounting, test)).collect(),
+            hold_out_score: score / (3.0 * observations.len() as f64),
         })
     }
 
@@ -140,27 +127,21 @@ impl Validity {
     pub fn outlier(&self, alpha: f64) -> Option<usize> {
         let each = alpha / self.plateaus.len() as f64;
         let place = |a: &usize, b: &usize| {
-            let p = |n: usize| self.plateaus[n].prediction.probability;
+            let p = |n: usize| self.plateaus[n].test.probability;
             p(*a).total_cmp(&p(*b))
         };
-        (0..self.plateaus.len()).min_by(place).filter(|&n| self.plateaus[n].prediction.probability < each)
-    }
-
-    /// Mean [`LeftOutPrediction::score`] per reading when each mounting is predicted from all others: 1 and a little more for a
-    /// true model, more for one that lacks a term or has too many.
-    pub fn hold_out_score(&self) -> f64 {
-        let sum: f64 = self.mountings.iter().map(|(_, prediction)| prediction.score).sum();
-        sum / (3.0 * self.plateaus.len() as f64)
+        (0..self.plateaus.len()).min_by(place).filter(|&n| self.plateaus[n].test.probability < each)
     }
 }
 
-impl<'m> Data<'m> {
+impl Data<'_> {
     /// Fits, leaves out the plateau that stands out most at the family-wise error `alpha`, and fits again, until none does.
-    /// Never more than a tenth of the plateaus: beyond that it is not plateaus that are wrong.
+    /// Never more than a tenth of the plateaus: beyond that it is not plateaus that are wrong. The data that remain, and the set points left
+    /// out, the most outlying first, each with its probability at the time.
     ///
     /// # Errors
     /// [`FitError`] when numbers overflow.
-    pub fn without_outliers(&self, alpha: f64) -> Result<Cleaned<'m>, FitError> {
+    pub fn without_outliers(&self, alpha: f64) -> Result<(Self, Vec<(usize, f64)>), FitError> {
         self.without_most_outlying(alpha, self.observations().len(), &unwatched)
     }
 
@@ -173,7 +154,7 @@ impl<'m> Data<'m> {
         alpha: f64,
         most: usize,
         progress: OnProgress<()>,
-    ) -> Result<Cleaned<'m>, FitError> {
+    ) -> Result<(Self, Vec<(usize, f64)>), FitError> {
         let mut data = self.clone();
         let mut left_out = Vec::new();
         let most = most.min(data.observations().len() / 10);
@@ -181,9 +162,9 @@ impl<'m> Data<'m> {
             advance(progress, ())?;
             let validity = Calibration::exact(&data)?.validity()?;
             let Some(n) = validity.outlier(alpha).filter(|_| left_out.len() < most) else {
-                return Ok(Cleaned { data, left_out });
+                return Ok((data, left_out));
             };
-            left_out.push((validity.plateaus[n].set_point, validity.plateaus[n].prediction.probability));
+            left_out.push((validity.plateaus[n].set_point, validity.plateaus[n].test.probability));
             data = data.without(n)?;
         }
     }
@@ -205,12 +186,12 @@ impl Blocks<'_> {
             if free > REDUNDANT { self.residuals[3 * n + i] / free.sqrt() } else { 0.0 }
         });
         let leverage = (0..3).map(hat).sum::<f64>() / 3.0;
-        PlateauCheck { set_point, standardised, leverage, prediction: self.predict(&[n]) }
+        PlateauCheck { set_point, standardised, leverage, test: self.predict(&[n]).0 }
     }
 
-    /// The readings of the observations `members` from all others, along the principal directions of `E - H_bb`; those
-    /// in which nothing is redundant are left out.
-    fn predict(&self, members: &[usize]) -> LeftOutPrediction {
+    /// Test and score of the readings of the observations `members`, as the others predict them, along the principal directions of
+    /// `E - H_bb`; those in which nothing is redundant are left out.
+    fn predict(&self, members: &[usize]) -> (Test, f64) {
         let rows: Vec<usize> = members.iter().flat_map(|n| 3 * n..3 * n + 3).collect();
         let residuals = DVector::from_fn(rows.len(), |a, _| self.residuals[rows[a]]);
         let Principal { components, shares, beyond } = Principal::of(&self.basis.select_rows(&rows), &residuals);
@@ -229,7 +210,7 @@ impl Blocks<'_> {
         score += statistic;
         let left = self.degrees_of_freedom.saturating_sub(degrees_of_freedom);
         let probability = chance_of_explaining(statistic, degrees_of_freedom, self.chi_squared - statistic, left);
-        LeftOutPrediction { statistic, degrees_of_freedom, score, probability }
+        (Test { statistic, degrees_of_freedom, probability }, score)
     }
 }
 

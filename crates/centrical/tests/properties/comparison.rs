@@ -1,5 +1,5 @@
 use centrical::ErrorModel;
-use centrical::uncertainty::{Comparison, Compensated, Estimates, chi_squared_tail};
+use centrical::uncertainty::{Comparison, Compensated, Estimates, Test};
 use centrical_compensate::gain;
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 
@@ -76,9 +76,9 @@ fn a_calibration_agrees_with_itself() {
     let nothing = Estimates { values: DVector::zeros(0), covariance: DMatrix::zeros(0, 0) };
     assert!(!compare(&nothing, &nothing).agrees(), "nothing in common");
     for (chi_squared, probability) in [(0.0, 1.0), (-1e-9, 1.0), (f64::INFINITY, 0.0), (f64::NAN, 0.0)] {
-        assert_eq!(chi_squared_tail(chi_squared, 21), probability);
+        assert_eq!(Test::chi_squared(chi_squared, 21).probability, probability);
     }
-    assert_eq!(chi_squared_tail(1e9, 21), 0.0);
+    assert_eq!(Test::chi_squared(1e9, 21).probability, 0.0);
 }
 
 /// The uncertainty of a compensated reading against the scatter of readings compensated with drawn coefficients.

@@ -580,7 +580,7 @@ fn a_follower_of_rests_stands_where_a_fit_stands() {
         let (mut squared, mut degrees_of_freedom) = (0.0, 0);
         for n in 0..data.len() {
             let arrival = follower.test(&data[n]).unwrap();
-            squared += arrival.innovation.squared;
+            squared += arrival.innovation.statistic;
             degrees_of_freedom += arrival.innovation.degrees_of_freedom;
             follower.take(arrival).unwrap();
             if n % 9 == 4 || n + 1 == data.len() {

@@ -1,7 +1,7 @@
 //! Histories against drawn ones: intervals cover as they say, and what was planted is found, nothing else.
 
 use centrical::history::{
-    Between, Curve, Likely, Point, Quantiles, Reading, Sameness, Series, StationTest, UnitDistance, UnitTrend,
+    Between, Curve, Likely, Point, Quantiles, Reading, Series, StationTest, UnitDistance, UnitTrend,
 };
 use centrical::uncertainty::Estimates;
 use nalgebra::{DMatrix, DVector};
@@ -148,8 +148,8 @@ fn a_move_to_another_station_is_no_scatter() {
             };
             let sessions: Vec<Estimates> = points.iter().map(session).collect();
             let changes: Vec<DMatrix<f64>> = (0..6).map(|i| shared.rows(i, 1).into_owned()).collect();
-            let test = Sameness::of(&sessions, &vec![vec![0]; 6], &changes).unwrap();
-            assert!((test.chi_squared / found.misfit - 1.0).abs() < 1e-9, "{} {}", test.chi_squared, found.misfit);
+            let (test, _) = Estimates::sameness(&sessions, &vec![vec![0]; 6], &changes).unwrap();
+            assert!((test.statistic / found.misfit - 1.0).abs() < 1e-9, "{} {}", test.statistic, found.misfit);
             differ += u32::from(test.probability < 0.05);
         }
         assert!((f64::from(covered) / 1000.0 - expected).abs() < 0.021, "{between}: {covered}");
@@ -237,20 +237,20 @@ fn what_sessions_share_cancels_in_differences() {
             covariance: covariance.clone(),
         };
         let mut sessions = [session(), session(), session()];
-        let test = Sameness::of(&sessions, &each_of(5, sessions.len()), &[]).unwrap();
+        let (test, farthest) = Estimates::sameness(&sessions, &each_of(5, sessions.len()), &[]).unwrap();
         assert_eq!(test.degrees_of_freedom, 10);
-        sum += test.chi_squared;
+        sum += test.statistic;
         small += i32::from(test.probability < 0.05);
-        far += i32::from(test.farthest.unwrap().probability < 0.05);
+        far += i32::from(farthest.unwrap().probability < 0.05);
         // One that is 12 standard deviations off is named, and chi^2 without it is that of the two others.
         let odd = run % 3;
         sessions[odd].values += 12.0 * factor.column(2);
-        let farthest = Sameness::of(&sessions, &each_of(5, sessions.len()), &[]).unwrap().farthest.unwrap();
+        let farthest = Estimates::sameness(&sessions, &each_of(5, sessions.len()), &[]).unwrap().1.unwrap();
         let others = [(odd + 1) % 3, (odd + 2) % 3].map(|n| sessions[n].clone());
-        let alone = Sameness::of(&others, &each_of(5, 2), &[]).unwrap();
+        let (alone, farthest_alone) = Estimates::sameness(&others, &each_of(5, 2), &[]).unwrap();
         assert_eq!(farthest.session, odd);
         assert!((farthest.probability_of_others / alone.probability - 1.0).abs() < 1e-6);
-        assert_eq!(alone.farthest, None);
+        assert_eq!(farthest_alone, None);
     }
     // Sessions that scatter by ten standard deviations in one quantity: one in a hundred is too far off for the scatter of the others.
     let mut too_far = 0;
@@ -261,7 +261,7 @@ fn what_sessions_share_cancels_in_differences() {
                 covariance: covariance.clone(),
             })
             .collect();
-        let farthest = Sameness::of(&sessions, &each_of(5, sessions.len()), &[]).unwrap().farthest.unwrap();
+        let farthest = Estimates::sameness(&sessions, &each_of(5, sessions.len()), &[]).unwrap().1.unwrap();
         too_far += i32::from(farthest.probability_by_scatter < 0.05);
     }
     assert!((1..41).contains(&too_far), "{too_far}");
@@ -296,13 +296,13 @@ fn sessions_need_not_have_all_quantities() {
             };
             has.iter().enumerate().map(session).collect()
         };
-        let test = Sameness::of(&of(0.0), &has, &[]).unwrap();
+        let (test, _) = Estimates::sameness(&of(0.0), &has, &[]).unwrap();
         assert_eq!(test.degrees_of_freedom, 14);
-        sum += test.chi_squared;
+        sum += test.statistic;
         small += i32::from(test.probability < 0.05);
-        let changed = Sameness::of(&of(20.0 * covariance[(2, 2)].sqrt()), &has, &[]).unwrap();
+        let (changed, farthest) = Estimates::sameness(&of(20.0 * covariance[(2, 2)].sqrt()), &has, &[]).unwrap();
         assert!(changed.probability < 1e-6, "{run}: {changed:?}");
-        let farthest = changed.farthest.unwrap();
+        let farthest = farthest.unwrap();
         assert_eq!(farthest.session, 4);
         assert!(farthest.probability < 1e-6 && farthest.probability_of_others > 1e-6);
     }

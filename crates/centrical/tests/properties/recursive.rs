@@ -3,8 +3,9 @@
 use std::collections::HashSet;
 
 use centrical::ThirdPosition::{AxisOneDown, AxisOneUp};
+use centrical::fit::Follower;
 use centrical::fit::filter::{Filter, Lifetimes, Readings};
-use centrical::fit::{Follower, Innovation};
+use centrical::uncertainty::Test;
 use centrical::{
     Calibration, Data, ErrorModel, Experiment, Extension, Extra, Fit, FitError, Group, Law, MeasurementModel,
     Observation, PairRelation, STANDARD_GRAVITY, Termination, rotation,
@@ -384,7 +385,7 @@ fn innovations_add_up_to_chi_squared() {
         let (mut squared, mut degrees_of_freedom) = (0.0, 0);
         for (place, readings) in readings_at_zero(&model, &data).iter().enumerate() {
             let innovation = filter.innovation(place, readings).unwrap();
-            squared += innovation.squared;
+            squared += innovation.statistic;
             degrees_of_freedom += innovation.degrees_of_freedom;
             filter.update(place, readings).unwrap();
         }
@@ -407,7 +408,7 @@ fn probabilities_of_good_plateaus_are_uniform() {
         for (place, readings) in readings_at_zero(&model, &data).iter().enumerate() {
             let innovation = filter.innovation(place, readings).unwrap();
             if innovation.degrees_of_freedom > 0 {
-                probabilities.push(innovation.probability());
+                probabilities.push(innovation.probability);
             }
             filter.update(place, readings).unwrap();
         }
@@ -476,7 +477,7 @@ fn follow<'m>(model: &'m MeasurementModel, data: &mut Vec<Observation>) -> Follo
         }
         degrees_of_freedom += innovation.degrees_of_freedom;
         if innovation.degrees_of_freedom > 0 {
-            probabilities.push(innovation.probability());
+            probabilities.push(innovation.probability);
         }
         follower.take(arrival).unwrap();
     }
@@ -487,7 +488,7 @@ fn follow<'m>(model: &'m MeasurementModel, data: &mut Vec<Observation>) -> Follo
 }
 
 /// Tests a plateau and takes it up whatever the test says.
-fn take(follower: &mut Follower, observation: &Observation) -> Innovation {
+fn take(follower: &mut Follower, observation: &Observation) -> Test {
     let arrival = follower.test(observation).unwrap();
     let innovation = arrival.innovation;
     follower.take(arrival).unwrap();
@@ -552,7 +553,7 @@ fn a_gross_plateau_anywhere_is_alarmed_and_survived() {
                 let perfect = Observation { mean: at_zero.reading + off, ..observation.clone() };
                 Readings::new(&perfect, &at_zero).unwrap()
             };
-            let telling = perfect.innovation(place, &reading(blow)).unwrap().squared > TELLING;
+            let telling = perfect.innovation(place, &reading(blow)).unwrap().statistic > TELLING;
             perfect.update(place, &reading(Vector3::zeros())).unwrap();
 
             let mut taken = follower.clone();

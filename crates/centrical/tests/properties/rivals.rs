@@ -150,7 +150,7 @@ fn sound_sessions_are_left_alone() {
             let calibration = Calibration::exact(&data).unwrap();
             let validity = calibration.validity().unwrap();
             let shown = Rivals::of(&calibration, &unwatched).unwrap().suspects(Level::Reported.probability()).shown;
-            let outlier = validity.plateaus.iter().map(|p| p.prediction.probability).fold(1.0, f64::min);
+            let outlier = validity.plateaus.iter().map(|p| p.test.probability).fold(1.0, f64::min);
             let others = validity.probability.min(outlier * validity.plateaus.len() as f64);
             (shown.iter().map(|test| test.family_wise).fold(1.0, f64::min), others)
         })

@@ -76,12 +76,12 @@ fn the_true_model_is_recommended() {
             assert!(rival.hold_out_score > 2.0 * best.hold_out_score, "{}: {}", rival.name, rival.hold_out_score);
         }
         if rival.rank > best.rank {
-            let test = rival.against.unwrap();
-            assert_eq!(names[test.nested], "as stated");
+            let (nested, test) = rival.against.unwrap();
+            assert_eq!(names[nested], "as stated");
             assert!(test.probability > 1e-3, "{}: {test:?}", rival.name);
         }
     }
-    assert!(best.against.unwrap().probability < 1e-12);
+    assert!(best.against.unwrap().1.probability < 1e-12);
 }
 
 /// An extension that the session states belongs to its model: it is no addition, and the model without it is no candidate.
@@ -143,7 +143,7 @@ fn a_recommendation_is_no_chance_where_nothing_fits() {
         let recommended = &selection.candidates[selection.recommended];
         let chi_squared = recommended.chi_squared / recommended.degrees_of_freedom as f64;
         println!("{} {chi_squared:.0} {:?}", recommended.name, recommended.against);
-        assert!(recommended.against.as_ref().is_none_or(|test| test.probability < 0.05), "{}", recommended.name);
+        assert!(recommended.against.is_none_or(|(_, test)| test.probability < 0.05), "{}", recommended.name);
     }
 }
 
@@ -173,7 +173,7 @@ fn chances_of_additions_that_lose_combinations_are_chances() {
             let x = truth(&model, 1.0, &mut random);
             let data = session(&model, &x, &mut random);
             let selection = ModelSelection::of(&candidates, &data, &unwatched).unwrap();
-            [1, 2].map(|n| selection.candidates[n].against.as_ref().unwrap().probability)
+            [1, 2].map(|n| selection.candidates[n].against.unwrap().1.probability)
         })
         .collect();
     for (n, name) in names.into_iter().enumerate() {

@@ -2,7 +2,7 @@
 //! better sharpen it.
 
 use centrical::ThirdPosition::AxisOneUp;
-use centrical::uncertainty::{Level, MonteCarlo, Settings, chi_squared_tail};
+use centrical::uncertainty::{Level, MonteCarlo, Settings, Test};
 use centrical::{
     Calibration, Data, Extension, Law, MeasurementModel, PairRelation, Rival, SetPoint, Source, TypeB, unwatched,
 };
@@ -59,7 +59,7 @@ fn sessions_with_stated_deviations_are_accepted() {
             .chi_squared
             .sorted
             .iter()
-            .filter(|chi_squared| Level::Objection.is_passed_by(chi_squared_tail(**chi_squared, nu)));
+            .filter(|chi_squared| Level::Objection.is_passed_by(Test::chi_squared(**chi_squared, nu).probability));
         assert_eq!(refused.count(), 0, "{name}");
         let distance = shown.chi_squared.distance_from_chi_squared();
         // One time in a thousand by chance (Kolmogorov). Rounding is rectangular, and one term of many.

@@ -1,6 +1,6 @@
 //! How far a result can be trusted: the uncertainties by their sources, and the checks of the fit.
 
-use centrical::uncertainty::{BetweenRests, Budget, LeftOutPrediction, Level, Pattern, Rivals, Trend, Validity};
+use centrical::uncertainty::{BetweenRests, Budget, Level, Pattern, Rivals, Test, Trend, Validity};
 use centrical::{Calibration, Experiment, FitError};
 use centrical::{Prior, Source};
 use serde::{Deserialize, Serialize};
@@ -233,17 +233,17 @@ impl ValiditySummary {
                     mounting,
                     index: plateau - 1,
                     standardised: check.standardised.into(),
-                    probability: (family * check.prediction.probability).min(1.0),
+                    probability: (family * check.test.probability).min(1.0),
                 }
             })
             .filter(|plateau| Level::Reported.is_passed_by(plateau.probability))
             .collect();
         outlying.sort_by(|a, b| a.probability.total_cmp(&b.probability));
-        let prediction = |mounting: usize, p: &LeftOutPrediction| MountingPrediction {
+        let prediction = |(mounting, test): &(usize, Test)| MountingPrediction {
             mounting: mounting + 1,
-            chi_squared: p.statistic,
-            degrees_of_freedom: p.degrees_of_freedom,
-            probability: p.probability,
+            chi_squared: test.statistic,
+            degrees_of_freedom: test.degrees_of_freedom,
+            probability: test.probability,
         };
         let reported = patterns.iter().filter(|pattern| Level::Reported.is_passed_by(pattern.family_wise));
         Self {
@@ -251,7 +251,7 @@ impl ValiditySummary {
             noise_at_most: None,
             of_strongest_noise: None,
             outlying,
-            mountings: validity.mountings.iter().map(|(mounting, of)| prediction(*mounting, of)).collect(),
+            mountings: validity.mountings.iter().map(prediction).collect(),
             patterns_tested: patterns.len(),
             patterns: reported.map(|pattern| PatternSummary::new(experiment, pattern)).collect(),
             rivals_tested: 0,

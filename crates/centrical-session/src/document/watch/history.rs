@@ -6,7 +6,8 @@ use std::io::{self, Write};
 use std::path::Path;
 
 use centrical::MeasurementModel;
-use centrical::fit::{Innovation, Progress};
+use centrical::fit::Progress;
+use centrical::uncertainty::Test;
 use centrical_table::write_whole;
 use serde::{Deserialize, Serialize};
 
@@ -55,13 +56,9 @@ pub struct InnovationSummary {
     pub probability: f64,
 }
 
-impl From<Innovation> for InnovationSummary {
-    fn from(innovation: Innovation) -> Self {
-        Self {
-            squared: innovation.squared,
-            degrees_of_freedom: innovation.degrees_of_freedom,
-            probability: innovation.probability(),
-        }
+impl From<Test> for InnovationSummary {
+    fn from(Test { statistic, degrees_of_freedom, probability }: Test) -> Self {
+        Self { squared: statistic, degrees_of_freedom, probability }
     }
 }
 

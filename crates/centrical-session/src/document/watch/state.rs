@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use centrical::fit::{Follower, Innovation, Progress};
+use centrical::fit::{Follower, Progress};
+use centrical::uncertainty::Test;
 use centrical::{MeasurementModel, Observation, unwatched};
 use nalgebra::{Matrix3, Vector3};
 use serde::{Deserialize, Serialize};
@@ -172,22 +173,23 @@ impl WatchedPlateau {
     }
 
     /// A plateau that has come.
-    pub fn new(observation: &Observation, innovation: Innovation, alarm: bool, held_out: bool) -> Self {
-        let Innovation { squared, degrees_of_freedom } = innovation;
+    pub fn new(observation: &Observation, innovation: Test, alarm: bool, held_out: bool) -> Self {
         Self {
             set_point: observation.set_point,
             mean: observation.mean.into(),
             covariance: rows(&observation.covariance),
-            innovation: WatchedInnovation { squared, degrees_of_freedom },
+            innovation: WatchedInnovation {
+                squared: innovation.statistic,
+                degrees_of_freedom: innovation.degrees_of_freedom,
+            },
             alarm,
             held_out,
         }
     }
 
     /// Its test against the plateaus before it.
-    pub fn innovation(&self) -> Innovation {
-        let WatchedInnovation { squared, degrees_of_freedom } = self.innovation;
-        Innovation { squared, degrees_of_freedom }
+    pub fn innovation(&self) -> Test {
+        Test::chi_squared(self.innovation.squared, self.innovation.degrees_of_freedom)
     }
 
     /// Whether the covariance is one.

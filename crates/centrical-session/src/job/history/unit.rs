@@ -1,7 +1,7 @@
 //! One unit over its calibrations.
 
-use centrical::history::{Between, Curve, DAYS_IN_YEAR, Estimated, Evolution, Likely, Quantiles, Sameness, Series};
-use centrical::uncertainty::{Compensated, family_wise};
+use centrical::history::{Between, Curve, DAYS_IN_YEAR, Estimated, Evolution, Likely, Quantiles, Series};
+use centrical::uncertainty::{Compensated, Estimates, family_wise};
 use centrical_compensate::Term;
 use nalgebra::{DMatrix, Vector3};
 
@@ -223,11 +223,11 @@ impl Job<'_> {
             shared.push(changes.select_rows(&has));
             quantities.push(has);
         }
-        Sameness::of(&sessions, &quantities, &shared).map(|test| SamenessSummary {
-            chi_squared: test.chi_squared,
+        Estimates::sameness(&sessions, &quantities, &shared).map(|(test, farthest)| SamenessSummary {
+            chi_squared: test.statistic,
             degrees_of_freedom: test.degrees_of_freedom,
             probability: test.probability,
-            farthest: test.farthest.map(|farthest| DeviatingSession {
+            farthest: farthest.map(|farthest| DeviatingSession {
                 source: own[farthest.session].source.clone(),
                 date: own[farthest.session].date,
                 probability: farthest.probability,

@@ -16,37 +16,14 @@ use super::information::Filter;
 use super::readings::Readings;
 use crate::model::FitError;
 use crate::observability::Observability;
-use crate::statistics::{chi_squared_tail, sidak};
-
-/// The outcome of the test of one plateau.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Innovation {
-    /// Normalised innovation squared.
-    pub squared: f64,
-    /// Number of combinations of the three readings that could be predicted.
-    pub degrees_of_freedom: usize,
-}
-
-impl Innovation {
-    /// Probability that a plateau which fits shows an innovation as large as this or larger; 1 if nothing could be
-    /// predicted.
-    pub fn probability(&self) -> f64 {
-        chi_squared_tail(self.squared, self.degrees_of_freedom)
-    }
-
-    /// Whether the plateau does not fit, when one good session in `1 / false_alarm` of `plateaus` plateaus may be
-    /// accused of one that does not (Sidak).
-    pub fn is_alarm(&self, false_alarm: f64, plateaus: usize) -> bool {
-        sidak(self.probability(), plateaus.max(1) as f64) < false_alarm
-    }
-}
+use crate::statistics::Test;
 
 impl Filter<'_> {
     /// Tests the plateau at `place` of the order against the plateaus before, without taking it up.
     ///
     /// # Errors
     /// As [`Filter::update`].
-    pub fn innovation(&mut self, place: usize, readings: &Readings) -> Result<Innovation, FitError> {
+    pub fn innovation(&mut self, place: usize, readings: &Readings) -> Result<Test, FitError> {
         self.advance(place)?;
         let states = self.factor().states();
         let (mut rows, mut misfit) = (self.factor().triangle(), self.factor().right_side());
@@ -73,10 +50,10 @@ pub(in crate::fit) struct Unexplained {
 
 impl Unexplained {
     /// What a plateau brings that takes the equations from `self` to `after`.
-    pub fn innovation(&self, after: &Self) -> Innovation {
+    pub fn innovation(&self, after: &Self) -> Test {
         let degrees_of_freedom = (self.rank + 3).saturating_sub(after.rank).min(3);
         let growth = (after.squared - self.squared).max(0.0);
-        Innovation { squared: if degrees_of_freedom > 0 { growth } else { 0.0 }, degrees_of_freedom }
+        Test::chi_squared(if degrees_of_freedom > 0 { growth } else { 0.0 }, degrees_of_freedom)
     }
 
     fn of(mut rows: DMatrix<f64>, lengths: &DVector<f64>, misfit: &DVector<f64>) -> Self {
