@@ -77,12 +77,13 @@ impl Estimator {
         }
     }
 
-    /// The variance at averaging factor `m`; `None` if the record, less its gaps, has no term that long.
-    pub fn variance(self, phase: &Phase, m: usize) -> Option<RawVariance> {
-        self.watched_variance(phase, m, &Watch::new(&unwatched))
+    /// The variance at averaging factor `m`, in the square of the readings' unit, of the phase's for time deviations, and the number of terms of
+    /// which it is the mean; `None` if the record, less its gaps, has no term that long.
+    pub fn variance(self, phase: &Phase, m: usize) -> Option<(f64, usize)> {
+        self.watched_variance(phase, m, &Watch::new(&unwatched)).map(|raw| (raw.value, raw.terms))
     }
 
-    /// The same; what it gives after it was stopped means nothing.
+    /// The same before any correction; what it gives after it was stopped means nothing.
     pub(super) fn watched_variance(self, phase: &Phase, m: usize, watch: &Watch) -> Option<RawVariance> {
         let tau = m as f64 * phase.tau0();
         let phase_unit = |variance: RawVariance| RawVariance { value: variance.value * tau * tau / 3.0, ..variance };

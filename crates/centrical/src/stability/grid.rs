@@ -6,7 +6,7 @@ use crate::statistics::{PIECE, watched_median, whole};
 
 /// Readings on a regular grid.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Grid {
+pub(super) struct Grid {
     /// Sampling interval, s.
     pub interval: f64,
     /// One reading per grid point; NaN where it is missing.

@@ -4,7 +4,7 @@ use crate::progress::Watch;
 
 /// A variance as computed, before any correction of its bias.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct RawVariance {
+pub(super) struct RawVariance {
     /// Value, in the square of the readings' unit (for the time deviations: of the phase's).
     pub value: f64,
     /// Terms in the mean.

@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use centrical::stability::{
-    Analysis, Coefficient, Estimator, Grid, NoiseError, NoiseTerm, NoiseTerms, Phase, PowerLaw, Spectrum,
+    Analysis, Coefficient, Estimator, NoiseError, NoiseTerm, NoiseTerms, Phase, PowerLaw, Spectrum,
 };
 use centrical::{Stopped, unwatched};
 
@@ -149,7 +149,7 @@ fn degrees_of_freedom_of_the_windowed_totals() {
     let recipe = Recipe { white: 1.0, ..Recipe::default() };
     let phases: Vec<Phase> = (0..records).map(|seed| phase(&recipe, readings, seed)).collect();
     for estimator in [Estimator::ModifiedTotal, Estimator::HadamardTotal] {
-        let values: Vec<f64> = phases.iter().map(|phase| estimator.variance(phase, m).unwrap().value).collect();
+        let values: Vec<f64> = phases.iter().map(|phase| estimator.variance(phase, m).unwrap().0).collect();
         let mean = values.iter().sum::<f64>() / values.len() as f64;
         let variance = values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / values.len() as f64;
         let observed = 2.0 * mean * mean / variance;
@@ -239,14 +239,15 @@ fn a_line_stands_at_its_frequency_with_its_power() {
 fn readings_phase_and_time_stamps_agree() {
     let readings = Recipe { white: 1.0, ramp: 1.0, ..Recipe::default() }.readings(500, TAU0, 2);
     let times: Vec<f64> = (0..500).map(|k| 7.0 + TAU0 * f64::from(k)).collect();
-    let grid = Grid::of(&times, &readings, &unwatched).unwrap();
+    let stamped = Analysis::of(&times, &readings, &Estimator::ALL, &unwatched).unwrap();
     let direct = Phase::integrate(&readings, TAU0, &unwatched).unwrap();
-    let stamped = Phase::integrate(&grid.readings, grid.interval, &unwatched).unwrap();
     let given = Phase::new(direct.points().to_vec(), TAU0).unwrap();
-    for estimator in Estimator::ALL {
-        let value = |phase: &Phase| estimator.variance(phase, 8).unwrap().value;
-        assert_eq!(value(&direct), value(&given));
-        assert!((value(&direct) / value(&stamped) - 1.0).abs() < 1e-9);
+    for (estimator, of_stamped) in stamped.deviations {
+        assert_eq!(estimator.variance(&direct, 8).unwrap(), estimator.variance(&given, 8).unwrap());
+        let stamped = of_stamped.iter().find(|deviation| deviation.factor == 8).unwrap();
+        let direct = direct.deviations(estimator, &[8], Analysis::CONFIDENCE, &unwatched).unwrap()[0].value;
+        // The square is the variance.
+        assert!(((direct / stamped.value).powi(2) - 1.0).abs() < 1e-9);
     }
 }
 
