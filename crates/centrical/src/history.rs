@@ -34,4 +34,4 @@ pub use quantiles::Quantiles;
 pub use series::{Point, Series};
 pub use station::{Reading, StationTest};
 pub use together::FarthestSession;
-pub use units::{BatchTest, Capability, Index, UnitTrend};
+pub use units::{BatchTest, Capability, UnitTrend};

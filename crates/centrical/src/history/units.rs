@@ -21,22 +21,9 @@ pub struct UnitTrend {
     pub scatter_probability: f64,
 }
 
-/// How a parameter of many units lies between its limits (ISO 22514-2).
+/// An index of how a parameter of many units lies between its limits (ISO 22514-2).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Capability {
-    /// Mean over the units.
-    pub mean: f64,
-    /// Standard deviation over the units.
-    pub deviation: f64,
-    /// `Cp = (upper - lower) / (6 s)`; `None` with one limit only.
-    pub cp: Option<Index>,
-    /// `Cpk`: distance of the mean from the nearer limit over `3 s`.
-    pub cpk: Index,
-}
-
-/// An index and its interval.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Index {
     /// Estimate.
     pub value: f64,
     /// Its interval: for Cp exact for normal values, by chi^2; for Cpk of A. F. Bissell (Applied Statistics 39, 1990).
@@ -97,9 +84,10 @@ impl UnitTrend {
 }
 
 impl Capability {
-    /// Capability of `values` between `lower` and `upper`, each optional, with intervals of probability `coverage`.
+    /// Indices of `values` between `lower` and `upper`, each optional, with intervals of probability `coverage`:
+    /// `Cp = (upper - lower) / (6 s)`, `None` with one limit only, and `Cpk`, the distance of the mean from the nearer limit over `3 s`.
     /// `None` below two values, without a limit, or without scatter.
-    pub fn of(values: &[f64], lower: Option<f64>, upper: Option<f64>, coverage: f64) -> Option<Capability> {
+    pub fn of(values: &[f64], lower: Option<f64>, upper: Option<f64>, coverage: f64) -> Option<(Option<Self>, Self)> {
         let n = values.len();
         let nu = n.checked_sub(1).filter(|nu| *nu > 0)? as f64;
         let mean = values.iter().sum::<f64>() / n as f64;
@@ -110,11 +98,11 @@ impl Capability {
         let quantiles = chi_squared_quantiles(nu, coverage)?;
         let cp = lower.zip(upper).map(|(lower, upper)| {
             let value = (upper - lower) / (6.0 * deviation);
-            Index { value, interval: quantiles.map(|quantile| value * (quantile / nu).sqrt()) }
+            Self { value, interval: quantiles.map(|quantile| value * (quantile / nu).sqrt()) }
         });
         let doubt = (1.0 / (9.0 * n as f64) + nearer * nearer / (2.0 * nu)).sqrt();
         let half = Degrees::Infinite.coverage_factor(coverage) * doubt;
-        Some(Capability { mean, deviation, cp, cpk: Index { value: nearer, interval: [nearer - half, nearer + half] } })
+        Some((cp, Self { value: nearer, interval: [nearer - half, nearer + half] }))
     }
 }
 

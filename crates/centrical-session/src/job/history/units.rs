@@ -127,14 +127,15 @@ fn parameter(
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);
     let (low, high) = request.limits.get(name).copied().unwrap_or_default();
-    let capability = Capability::of(values, low, high, UnitHistoryRequest::COVERAGE).map(|found| CapabilitySummary {
-        low,
-        high,
-        cp: found.cp.map(|cp| cp.value),
-        cp_interval: found.cp.map(|cp| cp.interval),
-        cpk: found.cpk.value,
-        cpk_interval: found.cpk.interval,
-    });
+    let capability =
+        Capability::of(values, low, high, UnitHistoryRequest::COVERAGE).map(|(cp, cpk)| CapabilitySummary {
+            low,
+            high,
+            cp: cp.map(|cp| cp.value),
+            cp_interval: cp.map(|cp| cp.interval),
+            cpk: cpk.value,
+            cpk_interval: cpk.interval,
+        });
     Some(UnitsParameter {
         name: name.to_owned(),
         unit: of.parameters[place].unit.clone(),
