@@ -65,10 +65,10 @@ pub use fit::data::Data;
 pub use fit::estimates::{Fit, Termination};
 pub use linalg::least_squares::LeastSquares;
 pub use model::{
-    ArmMotion, Centrifuge, Course, Difference, Effect, ErrorModel, Experiment, Extension, Extra, FitError, Group,
-    History, Influence, Kind, Law, Linearisation, MeasurementModel, Mounting, Observation, PairRelation, Parameter,
-    Parameters, Position, Prior, PriorError, ReferencePoint, Rival, Rotation, STANDARD_GRAVITY, SetPoint, Site, Source,
-    SwitchOn, Term, ThirdPosition, TypeB, Unit, Weight, is_rotation, rotation, rotation_rate,
+    Centrifuge, Course, Difference, Effect, ErrorModel, Experiment, Extension, Extra, FitError, Group, History,
+    Influence, Kind, Law, Linearisation, MeasurementModel, Mounting, Observation, PairRelation, Parameter, Parameters,
+    Position, Prior, PriorError, ReferencePoint, Rival, Rotation, STANDARD_GRAVITY, SetPoint, Site, Source, SwitchOn,
+    Term, ThirdPosition, TypeB, Unit, Weight, is_rotation, rotation, rotation_rate,
 };
 pub use nalgebra;
 pub use observability::combination::Combination;

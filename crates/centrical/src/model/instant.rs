@@ -19,9 +19,9 @@ use super::frame::rotation;
 use super::measurement::MeasurementModel;
 use super::parameter::Parameter;
 
-/// Where the arm is in its turn and how it moves.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ArmMotion {
+/// Where the arm is in its turn and how it moves; by default at rest at the angle zero.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(crate) struct ArmMotion {
     /// Carousel angle `alpha_3` [rad].
     pub angle: f64,
     /// Angular speed `Omega` about the third arm axis [rad/s].
@@ -49,16 +49,13 @@ pub(crate) struct MountedUnit {
     pub disturbance: Vector3<f64>,
 }
 
-impl ArmMotion {
-    /// The arm at rest at the angle zero.
-    pub(crate) const REST: Self = Self { angle: 0.0, speed: 0.0, acceleration: 0.0 };
-}
-
 impl MeasurementModel {
-    /// Reading `f'` [m/s^2] of the unit in mounting `mounting` at the unknowns `x`, at one instant of the arm's motion.
-    pub fn reading_at(&self, mounting: usize, x: &[f64], motion: &ArmMotion) -> Vector3<f64> {
-        let unit = self.mounted_unit(mounting, x, motion);
-        let f = unit.specific_force(motion);
+    /// Reading `f'` [m/s^2] of the unit in mounting `mounting` at the unknowns `x`, at one instant of the arm's motion: carousel angle [rad],
+    /// angular speed [rad/s], and its derivative [rad/s^2].
+    pub fn reading_at(&self, mounting: usize, x: &[f64], [angle, speed, acceleration]: [f64; 3]) -> Vector3<f64> {
+        let motion = ArmMotion { angle, speed, acceleration };
+        let unit = self.mounted_unit(mounting, x, &motion);
+        let f = unit.specific_force(&motion);
         self.error_model.reading(self.parameters.coefficients(x), &f) + unit.disturbance
     }
 

@@ -119,14 +119,14 @@ pub(super) struct Physics<'a> {
 impl<'a> Physics<'a> {
     pub fn new(model: &'a MeasurementModel, truth: &'a [f64], mounting: usize) -> Self {
         let response = Response::new(model.error_model(), model.parameters().coefficients(truth));
-        let rigid = (!model.changes_with_speed()).then(|| model.mounted_unit(mounting, truth, &ArmMotion::REST));
+        let rigid = (!model.changes_with_speed()).then(|| model.mounted_unit(mounting, truth, &ArmMotion::default()));
         Self { model, truth, mounting, response, rigid }
     }
 
     /// Specific force of the unit at rest, and what is added to its readings [m/s^2].
     pub fn at_rest(&self) -> (Vector3<f64>, Vector3<f64>) {
-        let unit = self.model.mounted_unit(self.mounting, self.truth, &ArmMotion::REST);
-        (unit.specific_force(&ArmMotion::REST), unit.disturbance)
+        let unit = self.model.mounted_unit(self.mounting, self.truth, &ArmMotion::default());
+        (unit.specific_force(&ArmMotion::default()), unit.disturbance)
     }
 
     #[inline]

@@ -12,7 +12,7 @@ use std::f64::consts::TAU;
 use nalgebra::{Complex, Matrix2, Matrix3, Vector2, Vector3};
 
 use crate::fit::{Calibration, Fit};
-use crate::model::{ArmMotion, MeasurementModel};
+use crate::model::MeasurementModel;
 use crate::statistics::chi_squared_tail;
 use crate::uncertainty::verdict::Level;
 
@@ -182,8 +182,7 @@ fn turning(model: &MeasurementModel, set_point: usize, x: &[f64]) -> Amplitude {
     let set_point = &model.experiment().set_points[set_point];
     let at = |step: u8| {
         let angle = TAU * f64::from(step) / f64::from(STEPS);
-        let motion = ArmMotion { angle, speed: set_point.omega, acceleration: 0.0 };
-        let reading = model.reading_at(set_point.mounting, x, &motion);
+        let reading = model.reading_at(set_point.mounting, x, [angle, set_point.omega, 0.0]);
         reading.map(|f| Complex::from_polar(2.0 * f / f64::from(STEPS), -angle))
     };
     (0..STEPS).map(at).sum()

@@ -4,8 +4,7 @@ use centrical::ThirdPosition::{AxisOneDown, AxisOneUp};
 use centrical::reduction::Record;
 use centrical::simulate::{Equipment, Machine, Recorder, Simulation, SimulationError, Tachometer};
 use centrical::{
-    ArmMotion, ErrorModel, Experiment, Extension, Group, MeasurementModel, PairRelation, Parameter, SetPoint, Site,
-    rotation,
+    ErrorModel, Experiment, Extension, Group, MeasurementModel, PairRelation, Parameter, SetPoint, Site, rotation,
 };
 use nalgebra::Vector3;
 
@@ -91,7 +90,7 @@ fn an_instant_has_tilts_by_angle_and_the_earth_rate() {
         let steps = if s.is_rest() { 1 } else { STEPS };
         let at = |step: u8| {
             let angle = s.angle + TAU * f64::from(step) / f64::from(STEPS);
-            model.reading_at(s.mounting, &x, &ArmMotion { angle, speed: s.omega, acceleration: 0.0 })
+            model.reading_at(s.mounting, &x, [angle, s.omega, 0.0])
         };
         let mean = (0..steps).map(at).sum::<Vector3<f64>>() / f64::from(steps);
         assert!((mean - model.reading(s, &x)).amax() < 1e-10, "{s:?}: {mean}");
@@ -136,12 +135,11 @@ fn reading_at_an_instant_is_newton_in_the_reference_frame() {
             let place = |t: f64| c_yx(t).transpose() * r_y;
             specific_force(&place, experiment).dot(&(b_zy * c_yx(0.0)).row(i).transpose())
         });
-        let motion = ArmMotion { angle: angle(0.0), speed: 31.0, acceleration: 24.0 };
-        let found = model.reading_at(m, &x, &motion);
+        let found = model.reading_at(m, &x, [angle(0.0), 31.0, 24.0]);
         let error = (found - expected).amax();
         // Truncation: sixth derivative of the circle over 90, Omega^6 r h^4 / 90; rounding 8 eps r / h^2. h = 3e-4.
         assert!(error < 2e-7 * found.amax(), "mounting {m}: {error:e} of {:e}", found.amax());
-        let without_acceleration = model.reading_at(m, &x, &ArmMotion { acceleration: 0.0, ..motion });
+        let without_acceleration = model.reading_at(m, &x, [angle(0.0), 31.0, 0.0]);
         assert!((found - without_acceleration).amax() > 0.1, "the tangential part has been seen");
     }
 }
@@ -262,14 +260,13 @@ fn deformations_follow_the_speed() {
     let model = everything(tour(1.0).experiment().clone());
     let x = truth(&model, 1.0, &mut random);
     for (speed, angle) in [(12.0, 0.4), (55.0, 3.0)] {
-        let motion = ArmMotion { angle, speed, acceleration: 0.0 };
-        let reading = model.reading_at(0, &x, &motion);
+        let reading = model.reading_at(0, &x, [angle, speed, 0.0]);
         let mut stiff = x.clone();
         let named = |name: &str| model.parameters().iter().position(|p| p.name == name).unwrap();
         stiff[named("elastic_speed_2[1]")] = 0.0;
         let size = x[named("elastic_speed_2[1]")] * speed * speed;
         // Turned about axis 2, newtonometers 1 and 3 see each other's force.
-        let effect = reading - model.reading_at(0, &stiff, &motion);
+        let effect = reading - model.reading_at(0, &stiff, [angle, speed, 0.0]);
         assert!((effect.z / (size * reading.x)).abs() > 0.9 && (effect.z / (size * reading.x)).abs() < 1.1);
     }
 }

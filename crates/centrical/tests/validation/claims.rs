@@ -5,8 +5,8 @@ use centrical::ThirdPosition::{AxisOneDown, AxisOneUp};
 use centrical::fit::filter::Lifetimes;
 use centrical::plan::Normalised;
 use centrical::{
-    ArmMotion, Calibration, Data, ErrorModel, Experiment, Extension, Group, LeastSquares, MeasurementModel,
-    Observation, PairRelation, STANDARD_GRAVITY, Site, Termination,
+    Calibration, Data, ErrorModel, Experiment, Extension, Group, LeastSquares, MeasurementModel, Observation,
+    PairRelation, STANDARD_GRAVITY, Site, Termination,
 };
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 
@@ -251,7 +251,7 @@ fn the_printed_bound_of_the_coriolis_term_lacks_a_factor_two() {
     let speed = 20.0 * std::f64::consts::PI;
     let vertical = |step: u32| {
         let angle = std::f64::consts::TAU * f64::from(step) / 360.0;
-        model.reading_at(0, &x, &ArmMotion { angle, speed, acceleration: 0.0 }).z
+        model.reading_at(0, &x, [angle, speed, 0.0]).z
     };
     let (low, high) = (0..360).map(vertical).fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), f| (a.min(f), b.max(f)));
     let amplitude = 0.5 * (high - low);
