@@ -18,7 +18,7 @@ pub fn main() -> Result<(), Box<dyn Error>> {
     let column = model.parameters().find("G1_11").ok_or("the error model has no G1_11")?;
     let mut follower = Follower::new(&model);
     // A record that has not changed for this time is complete.
-    let mut watch = Watch::new(&session, Duration::ZERO);
+    let mut watch = Watch::new(&session, Duration::ZERO, false);
     // Whoever raises it ends a look after the record that is read.
     let stop = AtomicBool::new(false);
 

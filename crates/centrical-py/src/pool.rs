@@ -32,11 +32,14 @@ pub fn claim() -> PyResult<()> {
     ))
 }
 
+/// Threads at most: beyond it their start takes longer than the work.
+const MOST: usize = 1024;
+
 /// Sets the number of threads, before the first call.
 #[pyfunction]
 pub fn set_threads(count: usize) -> PyResult<()> {
-    if count == 0 {
-        return Err(PyValueError::new_err("count: found 0, expected one thread or more"));
+    if !(1..=MOST).contains(&count) {
+        return Err(PyValueError::new_err(format!("count: found {count}, expected 1 to {MOST} threads")));
     }
     claim()?;
     rayon::ThreadPoolBuilder::new().num_threads(count).build_global().map_err(|_| {

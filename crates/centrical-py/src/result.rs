@@ -21,6 +21,9 @@ use crate::pool;
 /// Rows from which on the interpreter lock is released.
 const MANY: usize = 512;
 
+/// Rows between two looks at signals: some hundredths of a second.
+const BETWEEN_SIGNALS: usize = 1 << 16;
+
 /// A figure: name, title, caption, drawings.
 type Drawn = (&'static str, String, String, Vec<String>);
 
@@ -211,14 +214,17 @@ impl CalibrationResult {
             let (read, mut write) = (arrays::to_read("forces", &forces)?, arrays::to_write("out", &uncertainties)?);
             let (Ok(from), Ok(to)) = (read.as_slice(), write.as_slice_mut()) else { return Ok(uncertainties.clone()) };
             let (from, to) = (as_rows(from), as_rows_mut(to));
-            py.detach(|| {
-                let set = |(f, u): (&[f64; 3], &mut [f64; 3])| *u = uncertain.at_force(*f);
-                if from.len() > MANY && pool::is_ours() {
-                    from.par_iter().zip(to).for_each(set);
-                } else {
-                    from.iter().zip(to).for_each(set);
-                }
-            });
+            let set = |(f, u): (&[f64; 3], &mut [f64; 3])| *u = uncertain.at_force(*f);
+            for (from, to) in from.chunks(BETWEEN_SIGNALS).zip(to.chunks_mut(BETWEEN_SIGNALS)) {
+                py.check_signals()?;
+                py.detach(|| {
+                    if from.len() > MANY && pool::is_ours() {
+                        from.par_iter().zip(to).for_each(set);
+                    } else {
+                        from.iter().zip(to).for_each(set);
+                    }
+                });
+            }
             drop(write);
             Ok(uncertainties)
         })

@@ -5,6 +5,7 @@ mod board;
 mod changed;
 mod following;
 mod growth;
+mod quiet;
 mod request;
 mod rests;
 

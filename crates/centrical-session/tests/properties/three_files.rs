@@ -121,10 +121,10 @@ fn growing_files_are_taken_up_plateau_by_plateau() {
             .filter(|(set_point, _)| *set_point < 9)
             .collect()
     };
-    let whole = seen(&mut Watch::new(&session, Duration::ZERO));
+    let whole = seen(&mut Watch::new(&session, Duration::ZERO, false));
     let names = ["x.csv", "y.csv", "z.csv"].map(|name| folder.path().join(name));
     let texts = names.each_ref().map(|name| fs::read(name).unwrap());
-    let mut watch = Watch::new(&session, Duration::from_secs(1 << 20));
+    let mut watch = Watch::new(&session, Duration::from_secs(1 << 20), false);
     let mut came = Vec::new();
     for part in 1..=20 {
         for (j, (name, text)) in names.iter().zip(&texts).enumerate() {

@@ -34,7 +34,7 @@ fn folder(ending: &str) -> (TempDir, Session) {
 fn at_once() -> Vec<Observation> {
     let (folder, session) = folder(".csv");
     fs::copy(example("records/m01.csv"), folder.path().join("records/m01.csv")).unwrap();
-    Watch::new(&session, Duration::ZERO).look(&GOES_ON).unwrap()
+    Watch::new(&session, Duration::ZERO, false).look(&GOES_ON).unwrap()
 }
 
 /// The same plateaus as from the whole record: means of the same windows, weighed by what was known of the noise then.
@@ -58,7 +58,7 @@ fn a_growing_text_is_taken_up_plateau_by_plateau() {
     let (folder, session) = folder(".csv");
     let text = fs::read(example("records/m01.csv")).unwrap();
     let file = folder.path().join("records/m01.csv");
-    let mut watch = Watch::new(&session, NEVER);
+    let mut watch = Watch::new(&session, NEVER, false);
     let mut came = Vec::new();
     let mut looks = 0;
     // No whole number of lines.
@@ -88,7 +88,7 @@ fn a_parquet_record_replaced_by_rename_is_taken_up_plateau_by_plateau() {
         writer.write(record.as_slice().part(0..rows)).unwrap();
         writer.finish().unwrap();
     };
-    let mut watch = Watch::new(&session, NEVER);
+    let mut watch = Watch::new(&session, NEVER, false);
     let mut came = Vec::new();
     let all = record.t.len();
     for part in 1..=20 {
@@ -121,7 +121,7 @@ fn a_record_that_another_follows_is_not_cut() {
     let text = fs::read(example("records/m01.csv")).unwrap();
     let (folder, session) = folder(".csv");
     let file = folder.path().join("records/m01.csv");
-    let mut watch = Watch::new(&session, NEVER);
+    let mut watch = Watch::new(&session, NEVER, false);
     fs::write(folder.path().join("records/m02.csv"), "t,f1,f2,f3\n").unwrap();
     // In the midst of the fifth plateau.
     fs::write(&file, &text[..text.len() / 2]).unwrap();
@@ -138,7 +138,7 @@ fn a_record_left_alone_in_part_is_refused() {
     let text = fs::read(example("records/m01.csv")).unwrap();
     let (folder, session) = folder(".csv");
     fs::write(folder.path().join("records/m01.csv"), &text[..text.len() / 2]).unwrap();
-    let error = Watch::new(&session, Duration::ZERO).look(&GOES_ON).unwrap_err().to_string();
+    let error = Watch::new(&session, Duration::ZERO, false).look(&GOES_ON).unwrap_err().to_string();
     assert!(error.contains("m01.csv"), "{error}");
 }
 
@@ -146,7 +146,7 @@ fn a_record_left_alone_in_part_is_refused() {
 #[test]
 fn a_stopped_look_leaves_the_other_records() {
     let session = Session::read(&example("")).unwrap();
-    let mut watch = Watch::new(&session, Duration::ZERO);
+    let mut watch = Watch::new(&session, Duration::ZERO, false);
     assert_eq!(watch.look(&AtomicBool::new(true)).unwrap(), []);
     let all = watch.look(&GOES_ON).unwrap();
     assert_eq!(all.len(), session.experiment.set_points.len());
@@ -173,7 +173,7 @@ fn a_stated_digit_is_known_while_a_session_is_watched() {
             .unwrap();
         let session = Session::read(folder.path()).unwrap();
         fs::write(folder.path().join("records/m01.csv"), &record).unwrap();
-        let came = Watch::new(&session, Duration::ZERO).look(&GOES_ON);
+        let came = Watch::new(&session, Duration::ZERO, false).look(&GOES_ON);
         assert_eq!(came.as_ref().ok().map(Vec::len), plateaus, "{stated:?}: {came:?}");
     }
 }

@@ -15,6 +15,7 @@ use centrical_table::Extent;
 
 use super::changed::reads_otherwise;
 use super::growth::Growth;
+use super::quiet::Quiet;
 use super::rests;
 use crate::error::Error;
 use crate::experiment::{Session, SpeedSource};
@@ -28,7 +29,7 @@ use crate::job::reduce::{ShownSpeeds, located, refuse_copies};
 #[derive(Debug, Clone)]
 pub struct Watch<'s> {
     session: &'s Session,
-    quiet: Duration,
+    quiet: Quiet,
     /// Whether the rests in attitudes of their own have come.
     has_rests: bool,
     /// Mountings whose plateaus have all come.
@@ -76,11 +77,11 @@ impl Look {
 }
 
 impl<'s> Watch<'s> {
-    /// Before the first look at the records of `session`.
-    pub fn new(session: &'s Session, quiet: Duration) -> Self {
+    /// Before the first look at the records of `session`, or before the only one.
+    pub fn new(session: &'s Session, quiet: Duration, looks_once: bool) -> Self {
         Self {
             session,
-            quiet,
+            quiet: Quiet::new(quiet, looks_once),
             has_rests: false,
             finished: Vec::new(),
             taken: Vec::new(),
@@ -121,8 +122,9 @@ impl<'s> Watch<'s> {
 
     /// What a look would find if a record that has just changed counted as finished, for who looks only once.
     pub fn without_quiet(&self, stop: &AtomicBool) -> Option<String> {
-        let mut hasty = Self { quiet: Duration::ZERO, seen: None, note: None, ..self.clone() };
-        let changed = format!("records changed within the last {} s; with --quiet 0", self.quiet.as_secs_f64());
+        let quiet = Quiet::new(Duration::ZERO, true);
+        let mut hasty = Self { quiet, seen: None, note: None, ..self.clone() };
+        let changed = format!("records changed within the last {} s; with --quiet 0", self.quiet.after.as_secs_f64());
         match hasty.look(stop) {
             Ok(more) if more.is_empty() => None,
             Ok(more) => {
@@ -271,7 +273,7 @@ impl<'s> Watch<'s> {
     }
 
     /// `None` while there is no record.
-    fn look_of(&self, mounting: usize) -> Option<Look> {
+    fn look_of(&mut self, mounting: usize) -> Option<Look> {
         let (mut bytes, mut changed) = (0, None);
         // Where every newtonometer has a file, the last one to change counts.
         for file in &self.session.mountings[mounting].records {
@@ -279,7 +281,7 @@ impl<'s> Watch<'s> {
             bytes += metadata.len();
             changed = changed.max(metadata.modified().ok());
         }
-        let left_alone = changed.and_then(|changed| changed.elapsed().ok()).is_some_and(|age| age >= self.quiet);
+        let left_alone = self.quiet.is_left_alone(mounting, bytes, changed);
         let mut later = self.session.mountings[mounting + 1..].iter().filter_map(|m| m.records.first());
         Some(Look { bytes, changed, left_alone, followed: later.any(|file| file.exists()) })
     }

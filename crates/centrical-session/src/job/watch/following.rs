@@ -130,7 +130,7 @@ impl<'a> Following<'a> {
         report: &mut dyn FnMut(WatchEvent),
         mut board: Option<&mut Board>,
     ) -> Result<Option<WatchEnd>, Error> {
-        let mut watch = Watch::new(self.session, self.request.quiet);
+        let mut watch = Watch::new(self.session, self.request.quiet, self.request.once);
         let (mut note, mut is_frozen) = (None, false);
         loop {
             self.session.folder.marks().refuse_replaced()?;
