@@ -42,26 +42,6 @@ fn is_quantity(name: &str) -> bool {
 /// Standard uncertainty of an unknown change of bias [m/s^2]: ten times a typical bias.
 pub(crate) const ANY_BIAS: f64 = 0.5;
 
-/// What an experiment lacks for a quantity to have an error in it.
-fn lacking(key: &str, experiment: &Experiment) -> Option<&'static str> {
-    const OF_ARM: [&str; 8] = [
-        "radius",
-        "radius_difference",
-        "speed_scale",
-        "plateau_speed",
-        "proof_masses",
-        "attitude",
-        "mounting_bias",
-        "mounting_scale",
-    ];
-    match key {
-        "latitude" if experiment.site.latitude.is_none() => Some("no such key without a latitude in [site]"),
-        "rest_angle" if !experiment.has_rests_on_arm() => Some("no such key without a plateau at rest on an arm"),
-        _ if OF_ARM.contains(&key) && !experiment.has_arm() => Some("no such key without a [[mounting]] on an arm"),
-        _ => None,
-    }
-}
-
 /// Standard uncertainties of what `experiment` has, SI; `plateau_speed` is the same as `speed_uncertainty` of `[centrifuge]` or absent, and
 /// `speed_scale` the same as the scale of measured speeds, where both are stated.
 pub(crate) fn type_b(
@@ -75,8 +55,9 @@ pub(crate) fn type_b(
     let mut type_b = TypeB { bias_change: ANY_BIAS, speed_scale: speeds.scale(), ..TypeB::default() };
     for (key, dimension, largest, take) in QUANTITIES {
         let Some(quantity) = table.get(key) else { continue };
-        if let Some(expected) = lacking(key, experiment) {
-            return Err(at.unexpected(key, quantity.to_string(), expected));
+        // A laboratory states the same of all its sessions; but the Earth's rotation is left out without a latitude.
+        if key == "latitude" && experiment.site.latitude.is_none() {
+            return Err(at.unexpected(key, quantity.to_string(), "no such key without a latitude in [site]"));
         }
         let meaning = "a standard uncertainty, zero or more and not beyond reason";
         take(&mut type_b, at.bounded(key, quantity, dimension, (0.0, largest), meaning)?);

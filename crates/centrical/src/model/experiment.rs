@@ -299,11 +299,6 @@ impl Experiment {
         same.map(|same| (same.iter().map(|(n, _)| *n).min().unwrap_or(0), same.len())).collect()
     }
 
-    /// Whether the arm rests.
-    pub fn has_rests_on_arm(&self) -> bool {
-        !self.rest_angles().is_empty()
-    }
-
     /// The angles at which the arm rests, in the order of the session: of each the index of its first set point, and the angle [rad].
     pub(crate) fn rest_angles(&self) -> Vec<(usize, f64)> {
         SetPoint::distinct_angles(
