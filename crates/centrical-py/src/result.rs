@@ -236,7 +236,8 @@ impl CalibrationResult {
         if let Some(compensation) = self.compensation.get() {
             return Ok(compensation);
         }
-        let compensation = owned(&self.result).map_err(|error| exception(py, &error))?;
+        let compensation =
+            self.result.compensation(Path::new(IN_MEMORY), None).map_err(|error| exception(py, &error))?;
         Ok(self.compensation.get_or_init(|| compensation))
     }
 
@@ -256,14 +257,6 @@ impl CalibrationResult {
 
 /// What messages call a result that was read from no file.
 const IN_MEMORY: &str = "result";
-
-fn owned(result: &session::CalibrationResult) -> Result<Owned, Error> {
-    let file = || Path::new(IN_MEMORY).to_owned();
-    let terms = result.error_terms().map_err(|source| Error::ErrorModel { file: file(), source })?;
-    let range = result.compensation_range(&terms);
-    let owned = range.and_then(|range| Owned::new(terms, range));
-    owned.map(|owned| result.in_its_axes(owned)).map_err(|source| Error::NotInvertible { file: file(), source })
-}
 
 fn between(
     py: Python,

@@ -27,13 +27,9 @@ pub(crate) fn source_of_result(
     file: &Path,
     range: Option<f64>,
 ) -> Result<Vec<SourceFile>, Error> {
-    let file = || file.to_owned();
-    let terms = result.error_terms().map_err(|source| Error::ErrorModel { file: file(), source })?;
-    let range = range.map_or_else(|| result.compensation_range(&terms), Ok);
-    let compensation = range.and_then(|range| Compensation::new(terms, range));
-    let compensation = compensation.map_err(|source| Error::NotInvertible { file: file(), source })?;
+    let compensation = result.compensation(file, range)?;
     let names: Vec<String> = result.model.error_model.iter().map(|term| term.name.clone()).collect();
-    Ok(compensation_source(&heading(result), &names, &result.in_its_axes(compensation), result.output.as_ref()))
+    Ok(compensation_source(&heading(result), &names, &compensation, result.output.as_ref()))
 }
 
 /// What the first comment says of a result.

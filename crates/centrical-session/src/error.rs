@@ -10,7 +10,8 @@ pub(crate) use centrical_table::{quoted, shown_path};
 use centrical::plan::PlanError;
 use centrical::reduction::ReductionError;
 use centrical::stability::NoiseError;
-use centrical::{FitError, Stopped};
+use centrical::{FitError, STANDARD_GRAVITY, Stopped};
+use centrical_compensate::NotInvertible;
 use centrical_table::Error as TableError;
 
 /// Why a session, a record or a table could not be read or written.
@@ -58,12 +59,12 @@ pub enum Error {
         source: NoErrorModel,
     },
     /// The error model of a result has no certain inverse over the range asked for.
-    #[error("{}: {source}", shown_path(file))]
+    #[error("{}: {source}{}", shown_path(file), certain_range(source))]
     NotInvertible {
         /// The result.
         file: PathBuf,
         /// Why, and over what range it has one.
-        source: centrical_compensate::NotInvertible,
+        source: NotInvertible,
     },
     /// There is no plan.
     #[error("{}: {source}", shown_path(file))]
@@ -290,6 +291,17 @@ impl Error {
     pub fn writing(file: &Path, source: io::Error) -> Self {
         TableError::writing(file, source).into()
     }
+}
+
+/// The range in g that was too large, and the one that could be asked for.
+fn certain_range(source: &NotInvertible) -> String {
+    let NotInvertible::TooNonlinear { factor, range, .. } = source else { return String::new() };
+    // As the message has it in m/s^2.
+    let [range, certain] = [*range, 0.999 * factor * range].map(|f| f / STANDARD_GRAVITY);
+    if *factor == 0.0 {
+        return String::new();
+    }
+    format!("; found a range of {range:.3} g, expected one up to {certain:.3} g (--range)")
 }
 
 /// Why a result does not say how to compensate.

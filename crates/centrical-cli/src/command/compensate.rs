@@ -25,7 +25,7 @@ pub struct Arguments {
     #[arg(long, value_name = "SESSION")]
     session: Option<PathBuf>,
     /// Largest specific force on each axis, such as "200 g"; readings beyond it become nan
-    /// [default: twice the largest plateau reading of the calibration, within the range of the certified inverse]
+    /// [default: twice the largest plateau reading of the calibration, or less where the inverse is not certified so far, but no less than that reading]
     #[arg(long, value_name = "QUANTITY", value_parser = acceleration)]
     range: Option<f64>,
     /// Refuse a record with readings beyond those of the calibration, by more than a hundredth; nothing is written then

@@ -43,7 +43,7 @@ pub struct Arguments {
     #[arg(long, alias = "c", value_name = "DIR")]
     code: Option<PathBuf>,
     /// Largest specific force on each axis that the source code takes, such as "200 g"
-    /// [default: twice the largest plateau reading of the calibration, within the range of the certified inverse]
+    /// [default: twice the largest plateau reading of the calibration, or less where the inverse is not certified so far, but no less than that reading]
     #[arg(long, value_name = "QUANTITY", value_parser = acceleration, requires = "code")]
     range: Option<f64>,
     #[command(flatten)]

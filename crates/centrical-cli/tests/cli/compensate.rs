@@ -118,6 +118,21 @@ fn refusals() {
     refused(&["f.csv"], "result.json: G1_31: found no value, the data do not determine it");
 }
 
+/// Where the inverse is not certain over the calibrated range, the message has the range that could be asked for.
+#[test]
+fn a_range_that_is_not_certain() {
+    let copy = calibrated();
+    let result = copy.out().join("result.json");
+    let mut json: serde_json::Value = serde_json::from_str(&fs::read_to_string(&result).unwrap()).unwrap();
+    let parameters = json["parameters"].as_array_mut().unwrap();
+    parameters.iter_mut().find(|p| p["name"] == "G1_31").unwrap()["value"] = 2e-4.into();
+    fs::write(&result, json.to_string()).unwrap();
+    for output in [compensate(&copy, &["f.csv"]), copy.run(&["report", "result.json", "--code", "code"])] {
+        assert_eq!(output.status.code(), Some(2), "{}", text(&output));
+        assert!(text(&output).contains(" g (--range)"), "{}", text(&output));
+    }
+}
+
 /// `report --c` leaves the source files; what they compute is checked where they are made.
 #[test]
 fn source_code() {
@@ -244,8 +259,7 @@ fn formats_that_are_not_written_are_refused() {
     let copy = calibrated();
     for name in ["f.csv.gz", "f.xlsx", "f.npy"] {
         let output = compensate(&copy, &[name]);
-        let expected =
-            format!("{name}: found the name of a format that is not written, expected a name that ends in .csv");
+        let expected = format!("{name}: found the name of a format that is not written (");
         assert!(output.status.code() == Some(2) && text(&output).contains(&expected), "{}", text(&output));
     }
     assert!(compensate(&copy, &["f.pq"]).status.success());

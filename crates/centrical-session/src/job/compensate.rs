@@ -80,12 +80,7 @@ pub fn compensate(
         Some(axes) => axes.of(result, &request.result)?,
         None => result,
     };
-    let file = || request.result.clone();
-    let terms = result.error_terms().map_err(|source| Error::ErrorModel { file: file(), source })?;
-    let compensation = (request.range.map_or_else(|| result.compensation_range(&terms), Ok))
-        .and_then(|range| Compensation::new(&terms, range))
-        .map(|compensation| result.in_its_axes(compensation))
-        .map_err(|source| Error::NotInvertible { file: file(), source })?;
+    let compensation = result.compensation(&request.result, request.range)?;
     let mut inputs = vec![request.result.clone(), request.record.clone()];
     let columns = match &request.session {
         Some(session) => {

@@ -1,9 +1,11 @@
 //! The error model that a result holds, as compensation takes it.
 
+use std::path::Path;
+
 use centrical_compensate::{Compensation, Monomial, NotInvertible, Term};
 
 use super::schema::CalibrationResult;
-use crate::error::NoErrorModel;
+use crate::error::{Error, NoErrorModel};
 use crate::store::TermSummary;
 
 impl CalibrationResult {
@@ -37,6 +39,19 @@ impl CalibrationResult {
         let margin = Compensation::new(terms, calibrated)?.certificate().margin;
         // At the margin itself rounding decides whether the inverse is certain.
         Ok(calibrated * (margin * (1.0 - 1e-9)).min(2.0))
+    }
+
+    /// The compensation by this result, which is in `file`, over `range` [m/s^2], by default over that of
+    /// [`CalibrationResult::compensation_range`]. It gives specific forces in the axes that the result is stated in.
+    ///
+    /// # Errors
+    /// [`Error`] where the result lacks a coefficient, or its model is not certain to be invertible over the range.
+    pub fn compensation(&self, file: &Path, range: Option<f64>) -> Result<Compensation<Vec<Term>>, Error> {
+        let terms =
+            self.error_terms().map_err(|source| Error::ErrorModel { file: file.to_owned(), source })?;
+        let range = range.map_or_else(|| self.compensation_range(&terms), Ok);
+        let compensation = range.and_then(|range| Compensation::new(terms, range));
+        compensation.map(|compensation| self.in_its_axes(compensation)).map_err(|source| Error::NotInvertible { file: file.to_owned(), source })
     }
 
     /// A compensation by this result that gives specific forces in the axes that it is stated in.
