@@ -133,6 +133,25 @@ fn a_range_that_is_not_certain() {
     }
 }
 
+/// Rows that lack a reading are left out with their stamps where the session says so, and refused where it does not.
+#[test]
+fn rows_that_lack_a_reading() {
+    let copy = calibrated();
+    let stamp = |k: usize| format!("2026-10-05T10:00:00.{k}Z");
+    let row = |k: usize, f1: &str| format!("{},{f1},2,3\n", stamp(k));
+    let record = ["t,f1,f2,f3\n".to_owned(), row(0, "1"), row(1, "NaN"), row(2, ""), row(3, "1")].concat();
+    fs::write(copy.out().join("gaps.csv"), record).unwrap();
+    let session = copy.session();
+    let arguments = ["compensate", "result.json", "gaps.csv", "--out", "f.csv", "--session", session.to_str().unwrap()];
+    assert_eq!(copy.run(&arguments).status.code(), Some(2));
+    copy.edit("experiment.toml", |text| text.replace("[columns]\n", "[columns]\nmissing_readings = \"left out\"\n"));
+    let output = copy.run(&arguments);
+    assert!(output.status.success() && text(&output).contains("2 readings compensated"), "{}", text(&output));
+    let written = fs::read_to_string(copy.out().join("f.csv")).unwrap();
+    let stamps: Vec<&str> = written.lines().skip(1).filter_map(|line| line.split(',').next()).collect();
+    assert_eq!(stamps, [stamp(0), stamp(3)]);
+}
+
 /// `report --c` leaves the source files; what they compute is checked where they are made.
 #[test]
 fn source_code() {

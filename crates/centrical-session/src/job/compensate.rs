@@ -160,8 +160,13 @@ fn on_this_thread(
     let mut writer = RecordWriter::create_rounded(output, compensation.certificate().range)?;
     let unit = columns.f[0].unit.clone();
     let mut sum = CompensatedRecord { unit, decimals: writer.decimals(), ..CompensatedRecord::default() };
-    while let Some(batch) = record.next_batch()? {
-        let compensated = batch.par_iter_mut().map(|rows| compensate_rows(compensation, calibrated, input, rows));
+    while record.next_batch()?.is_some() {
+        let mut stamps = record.take_stamps();
+        for (rows, stamps) in record.batch().iter_mut().zip(&mut stamps) {
+            columns.missing_readings.leave_out_stamped(rows, stamps);
+        }
+        let compensated =
+            record.batch().par_iter_mut().map(|rows| compensate_rows(compensation, calibrated, input, rows));
         for rows in compensated.collect::<Vec<_>>() {
             sum.add(&rows?);
         }
@@ -170,7 +175,6 @@ fn on_this_thread(
             let expected = format!("readings within the calibration, {:.1?} m/s^2", calibrated.limit);
             return Err(Error::content(input, Place::Whole, found, expected));
         }
-        let stamps = record.take_stamps();
         let stretches: Vec<RecordSlice> = record.batch().iter().map(stretch).collect();
         if stamps.iter().all(Stamps::is_empty) {
             writer.write_all(&stretches)?;

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use centrical::history::DAYS_IN_YEAR;
 use centrical_table::{
-    ColumnName, Extent, Field, Rows, Rule, Source, TableLines, TableReader, UnitsFound, is_missing, to_scale,
+    ColumnName, Extent, Field, Rows, Rule, Source, Stamps, TableLines, TableReader, UnitsFound, is_missing, to_scale,
 };
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -183,12 +183,18 @@ pub(crate) fn named_columns(
 impl MissingReadings {
     /// Leaves out the rows that lack a reading, if so stated; the first column is time.
     pub(super) fn leave_out(self, rows: &mut Rows) {
+        self.leave_out_stamped(rows, &mut Stamps::default());
+    }
+
+    /// The same of rows with stamps.
+    pub(crate) fn leave_out_stamped(self, rows: &mut Rows, stamps: &mut Stamps) {
         if self == Self::Refused {
             return;
         }
         let is_whole = |row: usize| rows[1..].iter().all(|readings| !readings[row].is_nan());
         let whole: Vec<bool> = (0..rows[0].len()).map(is_whole).collect();
         if whole.contains(&false) {
+            *stamps = std::mem::take(stamps).of_rows(&whole);
             for column in rows {
                 let mut whole = whole.iter();
                 column.retain(|_| whole.next() == Some(&true));

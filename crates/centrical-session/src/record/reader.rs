@@ -85,14 +85,18 @@ pub struct RecordReader {
 }
 
 impl RecordReader {
-    /// Opens the record of `file`.
+    /// Opens the record of `file`; a reading that it may lack is NaN.
     ///
     /// # Errors
     /// If it cannot be read.
     pub fn open(file: &Path, columns: &Columns) -> Result<Self, Error> {
         // Readings to be compensated are as they are, in any unit of time.
-        let form = Form { lines: columns.record_lines, missing: None, expected: RECORD };
-        let record = Self::with(Source::open(file, RECORD)?, Extent::Whole, &columns.of_record(), form)?;
+        let form = Form { lines: columns.record_lines, missing: Some(columns.missing_readings), expected: RECORD };
+        let mut record = Self::with(Source::open(file, RECORD)?, Extent::Whole, &columns.of_record(), form)?;
+        if let Tables::One(table) = &mut record.table {
+            // Rows are left out together with their stamps, by whoever takes these.
+            table.missing = None;
+        }
         Ok(Self { span: None, ..record })
     }
 

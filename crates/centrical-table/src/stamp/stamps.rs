@@ -70,6 +70,26 @@ impl Stamps {
         }
     }
 
+    /// Those of the rows that are kept, in their order.
+    #[must_use]
+    pub fn of_rows(self, is_kept: &[bool]) -> Self {
+        let rows = (0..is_kept.len()).filter(|row| is_kept[*row]);
+        match &self.0 {
+            Kept::Ticks { form, ticks } => {
+                Self::counted(*form, rows.filter_map(|row| ticks.get(row).copied()).collect())
+            }
+            Kept::Texts { text, ends } => {
+                let mut kept = Self::default();
+                for (place, row) in rows.enumerate() {
+                    if let Some(stamp) = written(text, ends, row) {
+                        kept.push(place, stamp);
+                    }
+                }
+                kept
+            }
+        }
+    }
+
     /// Notes the text of a later row.
     pub(crate) fn push(&mut self, row: usize, stamp: &[u8]) {
         if let Kept::Texts { text, ends } = &mut self.0
