@@ -38,6 +38,15 @@ fn pages_are_numbered(text: &str, number: &str, page_of: impl Fn(usize, usize) -
     }
 }
 
+/// A long name is broken into lines beside the line for the date.
+#[test]
+#[ignore = "needs pdftotext"]
+fn a_long_name_stays_on_the_page() {
+    let name = "Prof. Dr.-Ing. habil. Maximiliane-Alexandra von Hohenlohe-Waldenburg-Schillingsfürst";
+    let text = certificate("en", |text| text.replacen("name = \"A. Ivanova\"", &format!("name = \"{name}\""), 1));
+    assert!(!text.contains(name) && joined(&text).contains("Schillingsfürst"), "{text}");
+}
+
 /// 7.8.2.1 a to o and 7.8.4.1 a to e; k (sampling) and p (results of others) do not apply.
 #[test]
 #[ignore = "needs pdftotext"]

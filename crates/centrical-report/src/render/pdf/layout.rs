@@ -138,19 +138,26 @@ impl Layout {
     pub fn signature(&mut self, [name, role, word, date, mark]: [&str; 5]) {
         const SMALL: f32 = 8.0;
         const ROOM: f32 = 62.0;
-        self.keep(64.0 + ROOM);
+        const FROM: f32 = LEFT + 190.0;
+        let date_line = (LEFT + WIDTH - 90.0, LEFT + WIDTH);
+        let broken = |text, weight| self.broken(text, weight, SIZE, date_line.0 - GUTTER - FROM).into_iter();
+        let signs = broken(name, Weight::Bold).map(|line| (line, Weight::Bold));
+        let signs = signs.chain(broken(role, Weight::Regular).map(|line| (line, Weight::Regular)));
+        let signs: Vec<(String, Weight)> = signs.take(MOST_LINES).collect();
+        let height = (26.0 + ROOM).max(12.0 * signs.len() as f32);
+        self.keep(38.0 + height);
         self.space(26.0);
         let y = self.y;
-        let date_line = (LEFT + WIDTH - 90.0, LEFT + WIDTH);
         for (from, to) in [(LEFT, LEFT + 170.0), date_line] {
             self.page().set_line_width(0.5).move_to(from, y).line_to(to, y).stroke();
         }
         self.text(word, Weight::Regular, SMALL, LEFT, y - 10.0);
         self.text(date, Weight::Regular, SMALL, date_line.0, y - 10.0);
-        self.text(name, Weight::Bold, SIZE, LEFT + 190.0, y);
-        self.text(role, Weight::Regular, SIZE, LEFT + 190.0, y - 12.0);
+        for (n, (line, weight)) in (0_u16..).zip(&signs) {
+            self.text(line, *weight, SIZE, FROM, y - 12.0 * f32::from(n));
+        }
         self.text(mark, Weight::Regular, SMALL, LEFT, y - 26.0);
-        self.space(26.0 + ROOM);
+        self.space(height);
     }
 
     /// Free space, none at the head of a page.
