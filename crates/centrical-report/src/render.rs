@@ -14,5 +14,5 @@ pub use self::history::{
 };
 pub use self::html::html;
 pub use self::live::{LIVE_SCRIPT, LIVE_STYLE, live_page, live_panel};
-pub use self::pdf::pdf;
+pub use self::pdf::{letters_without_glyph, pdf};
 pub use self::results::{ListedResult, compared_page, not_found, results_page, unchosen_page};

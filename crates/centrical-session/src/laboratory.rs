@@ -93,6 +93,70 @@ impl Laboratory {
         self.laboratory.logo.as_ref().map(|logo| folder.join(logo))
     }
 
+    /// The texts that stand on a certificate: table, key, text.
+    pub fn texts<'a>(&'a self) -> Vec<(String, &'static str, &'a str)> {
+        let Self { laboratory, customer, certificate, item, method, standard, person, decision, .. } = self;
+        let mut texts = Vec::new();
+        let mut add = |table: &str, entries: &[(&'static str, Option<&'a String>)]| {
+            let stated =
+                entries.iter().filter_map(|(key, text)| Some((table.to_owned(), *key, text.as_ref()?.as_str())));
+            texts.extend(stated);
+        };
+        let parties = [
+            ("[laboratory]", &laboratory.name, &laboratory.address, &laboratory.contact),
+            ("[customer]", &customer.name, &customer.address, &customer.contact),
+        ];
+        for (table, name, address, contact) in parties {
+            add(
+                table,
+                &[
+                    ("name", Some(name)),
+                    ("address.street", Some(&address.street)),
+                    ("address.city", Some(&address.city)),
+                    ("address.post_code", Some(&address.post_code)),
+                    ("contact.phone", contact.phone.as_ref()),
+                    ("contact.email", contact.email.as_ref()),
+                ],
+            );
+        }
+        add("[laboratory]", &[("accreditation", laboratory.accreditation.as_ref())]);
+        add(
+            "[certificate]",
+            &[
+                ("number", Some(&certificate.number)),
+                ("place", certificate.place.as_ref()),
+                ("replaces", certificate.replaces.as_ref()),
+            ],
+        );
+        add(
+            "[item]",
+            &[
+                ("manufacturer", item.manufacturer.as_ref()),
+                ("description", item.description.as_ref()),
+                ("condition", item.condition.as_ref()),
+                ("customer_number", item.customer_number.as_ref()),
+                ("adjustment", item.adjustment.as_ref()),
+            ],
+        );
+        add("[method]", &[("procedure", method.procedure.as_ref()), ("deviations", method.deviations.as_ref())]);
+        for (n, of) in (1..).zip(standard) {
+            add(
+                &format!("[[standard]] {n}"),
+                &[
+                    ("name", Some(&of.name)),
+                    ("identification", Some(&of.identification)),
+                    ("certificate", Some(&of.certificate)),
+                    ("traceable_to", Some(&of.traceable_to)),
+                ],
+            );
+        }
+        for (n, of) in (1..).zip(person) {
+            add(&format!("[[person]] {n}"), &[("name", Some(&of.name)), ("role", Some(&of.role))]);
+        }
+        add("[decision]", &[("specification", decision.as_ref().map(|decision| &decision.specification))]);
+        texts
+    }
+
     fn check(&self, file: &Path) -> Result<(), Error> {
         let refuse = |table: &str, key: &str, found: String, expected: &str| {
             let place = Place::Key { table: table.to_owned(), key: key.to_owned() };

@@ -387,3 +387,19 @@ fn a_logo_is_checked() {
     assert_eq!(run.status.code(), Some(2));
     assert_eq!(fs::read(copy.out().join("logo.png")).unwrap(), pixel);
 }
+
+/// Letters that the font lacks would be question marks on a signed document.
+#[test]
+fn letters_without_a_glyph_are_refused() {
+    let copy = calibrated("en");
+    let text = fs::read_to_string(example().join("laboratory.toml")).unwrap();
+    fs::write(copy.out().join("l.toml"), text.replace("Northern Navigation Works", "中国 Works")).unwrap();
+    let report = |form: &str| copy.run(&["report", "result.json", form, "l", "--laboratory", "l.toml"]);
+    let run = report("--pdf");
+    let message = String::from_utf8_lossy(&run.stderr).into_owned();
+    let said =
+        "l.toml, [customer], name: found the letters 中国, expected letters of Latin, Greek and Cyrillic alphabets";
+    assert!(run.status.code() == Some(2) && message.contains(said), "{message}");
+    assert!(!copy.out().join("l").exists());
+    assert_eq!(report("--dcc").status.code(), Some(0));
+}

@@ -1,5 +1,7 @@
 //! The calibration certificate on paper: the items of ISO/IEC 17025:2017, 7.8.2 and 7.8.4, in their order.
 
+use std::path::PathBuf;
+
 use centrical_session::{
     Address, CalibrationResult, Condition, Contact, Date, Laboratory, ModelSummary, PositionSummary, UnitHistoryReport,
     customary,
@@ -21,6 +23,8 @@ use crate::language::Language;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Issuer {
     /// The laboratory's file.
+    pub file: PathBuf,
+    /// What it says.
     pub laboratory: Laboratory,
     /// What its decision says of the unit, where one was asked for.
     pub unit: Option<UnitStatement>,

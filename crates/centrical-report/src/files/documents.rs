@@ -18,7 +18,7 @@ use crate::figure::{figures, history_figure, noise_plots};
 use crate::language::Language;
 use crate::picture::read_picture;
 use crate::plot::Plot;
-use crate::render::{html, pdf};
+use crate::render::{html, letters_without_glyph, pdf};
 
 /// The documents that are made of a result.
 #[derive(Debug, Clone, PartialEq)]
@@ -104,6 +104,12 @@ pub fn write_documents(request: &DocumentRequest) -> Result<Documents, Error> {
     let dcc = (issuer.as_ref().filter(|_| request.dcc.is_some()))
         .map(|issuer| dcc(&result, issuer, language, &request.result))
         .transpose()?;
+    let certificate = (issuer.as_ref().zip(request.pdf.as_ref()))
+        .map(|(issuer, _)| {
+            let document = certificate(&result, before.as_ref(), issuer, language);
+            printed(&with_attachment(document, dcc.as_deref()), issuer, &request.result)
+        })
+        .transpose()?;
     let history =
         request.history.as_deref().map(|file| lines_of_history(file, &result)).transpose()?.unwrap_or_default();
     if let Some(file) = &request.html {
@@ -112,16 +118,11 @@ pub fn write_documents(request: &DocumentRequest) -> Result<Documents, Error> {
         drawn.extend(history_figure(&history, &group_of, language));
         write_whole(file, html(&report(&result, unit, past.as_ref(), drawn, language)).as_bytes())?;
     }
-    if let Some(issuer) = &issuer {
-        if let Some(file) = &request.pdf {
-            write_whole(
-                file,
-                &pdf(&with_attachment(certificate(&result, before.as_ref(), issuer, language), dcc.as_deref())),
-            )?;
-        }
-        if let Some((file, dcc)) = request.dcc.as_ref().zip(dcc) {
-            write_whole(file, dcc.as_bytes())?;
-        }
+    if let Some((file, certificate)) = request.pdf.as_ref().zip(certificate) {
+        write_whole(file, &certificate)?;
+    }
+    if let Some((file, dcc)) = request.dcc.as_ref().zip(dcc) {
+        write_whole(file, dcc.as_bytes())?;
     }
     if let Some(folder) = &request.code {
         let sources = source_of_result(&result, &request.result, request.range)?;
@@ -167,12 +168,6 @@ pub fn write_all_documents(
     let unit = issuer.and_then(|issuer| issuer.unit.as_ref());
     let drawn = figures(result, language);
     write_whole(&folder.join(REPORT), html(&report(result, unit, None, drawn.clone(), language)).as_bytes())?;
-    if let Some(issuer) = issuer {
-        let dcc = dcc(result, issuer, language, &folder.join("result.json"))?;
-        let certificate = with_attachment(certificate(result, None, issuer, language), Some(&dcc));
-        write_whole(&folder.join(CERTIFICATE), &pdf(&certificate))?;
-        write_whole(&folder.join(DIGITAL_CERTIFICATE), dcc.as_bytes())?;
-    }
     let plots = folder.join("plots");
     create_folder(&plots)?;
     for figure in drawn {
@@ -181,6 +176,14 @@ pub fn write_all_documents(
             let name = if is_one { format!("{}.svg", figure.name) } else { format!("{}-{n:02}.svg", figure.name) };
             write_whole(&plots.join(name), drawing.as_bytes())?;
         }
+    }
+    if let Some(issuer) = issuer {
+        let file = folder.join("result.json");
+        let dcc = dcc(result, issuer, language, &file)?;
+        write_whole(&folder.join(DIGITAL_CERTIFICATE), dcc.as_bytes())?;
+        // Last, since it is refused where other documents are not.
+        let certificate = with_attachment(certificate(result, None, issuer, language), Some(&dcc));
+        write_whole(&folder.join(CERTIFICATE), &printed(&certificate, issuer, &file)?)?;
     }
     Ok(())
 }
@@ -263,7 +266,26 @@ pub fn read_issuer(file: &Path, result: &CalibrationResult) -> Result<Issuer, Er
     let limits = laboratory.limits(file, &parameters)?;
     let unit = laboratory.decision.as_ref().map(|decision| UnitStatement::new(result, decision, limits));
     let logo = laboratory.logo(file).map(|file| read_picture(&file)).transpose()?;
-    Ok(Issuer { laboratory, unit, past: None, logo })
+    Ok(Issuer { file: file.to_owned(), laboratory, unit, past: None, logo })
+}
+
+/// The PDF file of a certificate of the result in `file`.
+///
+/// # Errors
+/// [`Error`] naming the text with letters that the font lacks: they would be shown as question marks.
+fn printed(certificate: &Document, issuer: &Issuer, file: &Path) -> Result<Vec<u8>, Error> {
+    let refuse = |file: &Path, place, letters: String| {
+        let expected = "letters of Latin, Greek and Cyrillic alphabets that the font of the PDF has; HTML and the digital \
+                        certificate take all";
+        Error::content(file, place, format!("the letters {letters}"), expected)
+    };
+    for (table, key, text) in issuer.laboratory.texts() {
+        let letters = letters_without_glyph(text);
+        if !letters.is_empty() {
+            return Err(refuse(&issuer.file, Place::Key { table, key: key.to_owned() }, letters));
+        }
+    }
+    pdf(certificate).map_err(|letters| refuse(file, Place::Whole, letters))
 }
 
 /// A certificate that carries its digital form.

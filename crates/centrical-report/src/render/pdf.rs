@@ -6,11 +6,20 @@ mod font;
 mod layout;
 mod write;
 
+use self::font::{Font, Weight};
 use self::layout::Layout;
 use crate::document::{Block, Document};
 
+/// Letters of a text that a PDF file cannot show, each once.
+pub fn letters_without_glyph(text: &str) -> String {
+    Font::new(Weight::Bold).lacks(text)
+}
+
 /// The file of a document. The same document gives the same bytes.
-pub fn pdf(document: &Document) -> Vec<u8> {
+///
+/// # Errors
+/// Letters of its text that the font lacks.
+pub fn pdf(document: &Document) -> Result<Vec<u8>, String> {
     let mut layout = Layout::new();
     let room = document.opening.picture.as_ref().map(|picture| layout.picture(picture.width, picture.height));
     layout.title(&document.opening.title, room.unwrap_or(0.0));
@@ -20,7 +29,8 @@ pub fn pdf(document: &Document) -> Vec<u8> {
     for part in document.sections.iter().flat_map(|section| &section.blocks) {
         block(&mut layout, part);
     }
-    write::write(layout, document)
+    let lacking = layout.lacking.clone();
+    if lacking.is_empty() { Ok(write::write(layout, document)) } else { Err(lacking) }
 }
 
 fn block(layout: &mut Layout, block: &Block) {

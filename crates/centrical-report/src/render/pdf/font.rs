@@ -1,5 +1,6 @@
 //! The fonts: glyphs and widths.
 
+use centrical_session::harmless_line;
 use ttf_parser::Face;
 
 /// Weight of a text.
@@ -54,6 +55,18 @@ impl Font {
     pub fn glyph(&self, c: char) -> u16 {
         let glyph = |c| self.face.as_ref().and_then(|face| face.glyph_index(c)).map(|glyph| glyph.0);
         glyph(c).or_else(|| glyph('?')).unwrap_or(0)
+    }
+
+    /// Letters of a text that the font lacks, each once.
+    pub fn lacks(&self, text: &str) -> String {
+        let Some(face) = &self.face else { return String::new() };
+        let mut lacking = String::new();
+        for c in harmless_line(text).chars() {
+            if c != char::REPLACEMENT_CHARACTER && face.glyph_index(c).is_none() && !lacking.contains(c) {
+                lacking.push(c);
+            }
+        }
+        lacking
     }
 
     /// Width of a glyph in thousandths of the font's size.

@@ -31,13 +31,15 @@ const GUTTER: f32 = 8.0;
 pub(super) struct Layout {
     pub(super) pages: Vec<Content>,
     pub(super) fonts: [Font; 2],
+    /// Letters of the text that the font lacks.
+    pub(super) lacking: String,
     /// Upper edge of what comes next, from the foot of the page.
     y: f32,
 }
 
 impl Layout {
     pub fn new() -> Self {
-        let mut layout = Self { pages: Vec::new(), fonts: Weight::ALL.map(Font::new), y: 0.0 };
+        let mut layout = Self { pages: Vec::new(), fonts: Weight::ALL.map(Font::new), lacking: String::new(), y: 0.0 };
         layout.break_page();
         layout
     }
@@ -244,6 +246,7 @@ impl Layout {
 
     /// One line of text with its baseline at `y`.
     fn text(&mut self, text: &str, weight: Weight, size: f32, x: f32, y: f32) {
+        self.lacking += &self.font(weight).lacks(text);
         let glyphs = encoded(self.font(weight), text);
         show(self.page(), &glyphs, weight, size, x, y);
     }
