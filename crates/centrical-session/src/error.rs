@@ -313,6 +313,17 @@ pub enum NoErrorModel {
         /// Name of the coefficient.
         name: String,
     },
+    /// The reading jumps where a component changes its sign.
+    #[error(
+        "{name}: found a jump of the reading where f{number} changes its sign, expected a model without one: with a jump a model has \
+         no unique inverse"
+    )]
+    Jump {
+        /// Name of the coefficient.
+        name: String,
+        /// The component, from 1.
+        number: usize,
+    },
     /// A term is of no axis.
     #[error("{name}: found an axis that is not 1, 2 or 3")]
     Axis {

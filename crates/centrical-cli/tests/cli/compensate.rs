@@ -133,6 +133,18 @@ fn a_range_that_is_not_certain() {
     }
 }
 
+/// A model with a jump has no inverse over any range: its coefficient is named.
+#[test]
+fn a_jump_has_no_inverse() {
+    let copy = Copy::new();
+    copy.edit("experiment.toml", |text| text.replace("\"kozlov-2017\"", "[\"kozlov-2017\", \"jump\"]"));
+    copy.calibrate(&[]);
+    for output in [compensate(&copy, &["f.csv"]), copy.run(&["report", "result.json", "--code", "code"])] {
+        let said = "result.json: K_1[sgn(f1)]: found a jump of the reading where f1 changes its sign";
+        assert!(output.status.code() == Some(2) && text(&output).contains(said), "{}", text(&output));
+    }
+}
+
 /// Rows that lack a reading are left out with their stamps where the session says so, and refused where it does not.
 #[test]
 fn rows_that_lack_a_reading() {

@@ -47,11 +47,17 @@ impl CalibrationResult {
     /// # Errors
     /// [`Error`] where the result lacks a coefficient, or its model is not certain to be invertible over the range.
     pub fn compensation(&self, file: &Path, range: Option<f64>) -> Result<Compensation<Vec<Term>>, Error> {
-        let terms =
-            self.error_terms().map_err(|source| Error::ErrorModel { file: file.to_owned(), source })?;
+        let no_model = |source| Error::ErrorModel { file: file.to_owned(), source };
+        let terms = self.error_terms().map_err(no_model)?;
         let range = range.map_or_else(|| self.compensation_range(&terms), Ok);
         let compensation = range.and_then(|range| Compensation::new(terms, range));
-        compensation.map(|compensation| self.in_its_axes(compensation)).map_err(|source| Error::NotInvertible { file: file.to_owned(), source })
+        compensation.map(|compensation| self.in_its_axes(compensation)).map_err(|source| match source {
+            NotInvertible::Jump { term, axis } => {
+                let name = self.model.error_model[term].name.clone();
+                no_model(NoErrorModel::Jump { name, number: axis + 1 })
+            }
+            source => Error::NotInvertible { file: file.to_owned(), source },
+        })
     }
 
     /// A compensation by this result that gives specific forces in the axes that it is stated in.
