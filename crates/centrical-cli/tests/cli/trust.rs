@@ -45,6 +45,10 @@ fn bounds_are_stated_at_a_load_or_a_speed() {
     assert!(a.len() == b.len() && a.iter().zip(&b).all(|(a, b)| (a / b - 1.0).abs() < 1e-9));
     let at_speed = parameters("spin_square = \"5 ug at 10 rev/s\"");
     assert!(at_speed.as_array().unwrap().iter().any(Value::is_f64));
+    let copy = Copy::new();
+    copy.edit("experiment.toml", |text| format!("{text}\n[uncertainty]\nspin_square = \"100 ug\"\n"));
+    let refused = String::from_utf8(run(&["calibrate", copy.session().to_str().unwrap()]).stderr).unwrap();
+    assert!(refused.contains("or its size at a place: \"500 ug at 10 rev/s\""), "{refused}");
 }
 
 /// The same seed gives the same bytes on one thread and on three.

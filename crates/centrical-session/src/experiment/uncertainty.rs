@@ -8,7 +8,7 @@ use centrical::{Course, Effect, ErrorModel, Experiment, Kind, Law, Parameter, Ri
 use super::speeds::Speeds;
 use super::toml_path::TomlPath;
 use crate::error::{Error, quoted};
-use crate::quantity::Quantity;
+use crate::quantity::{Quantity, in_parameter_unit};
 use crate::units::Dimension;
 
 /// A quantity beside effects: its name, its dimension, what is beyond reason, and where it is taken.
@@ -122,7 +122,10 @@ fn bound(at: &TomlPath, key: &str, quantity: &Quantity, unknown: &Parameter) -> 
             let [size, place] = [size, place].map(|part| Quantity::Text(part.trim().to_owned()));
             at.finite(key, &size, of_size)? / at.finite(key, &place, of_place)?.powi(power)
         }
-        _ => at.of_parameter(key, quantity, unknown)?,
+        (_, growth) => in_parameter_unit(quantity, &unknown.unit, unknown.group).map_err(|not| {
+            let other = growth.map(|(size, place, _)| format!(", or its size at a place: {}", example(size, place)));
+            at.unexpected(key, not.found, not.expected + &other.unwrap_or_default())
+        })?,
     };
     let largest = BEYOND_REASON * unknown.typical;
     if value > 0.0 && value <= largest {
@@ -131,6 +134,17 @@ fn bound(at: &TomlPath, key: &str, quantity: &Quantity, unknown: &Parameter) -> 
         let expected = format!("a standard uncertainty above 0, and at most {largest:.1e} {}", unknown.unit);
         Err(at.unexpected(key, quantity.to_string(), expected))
     }
+}
+
+/// How the size of an effect at a load or a speed is written.
+fn example(size: Dimension, place: Dimension) -> String {
+    let size = match size {
+        Dimension::Angle => "0.3 urad",
+        Dimension::Ratio => "0.3 ppm",
+        Dimension::Length => "1 um",
+        _ => "500 ug",
+    };
+    format!("\"{size} at {}\"", if place == Dimension::Speed { "10 rev/s" } else { "100 g" })
 }
 
 /// A bound of an effect is at most as many of its typical magnitudes: beyond them a unit was mistaken.
