@@ -288,9 +288,10 @@ fn a_session_of_another_output_is_refused() {
 #[test]
 fn formats_that_are_not_written_are_refused() {
     let copy = calibrated();
-    for name in ["f.csv.gz", "f.xlsx", "f.npy"] {
+    for (name, format) in [("f.csv.gz", "packed text"), ("f.xlsx", "workbook"), ("f.npy", "NumPy")] {
         let output = compensate(&copy, &[name]);
-        let expected = format!("{name}: found the name of a format that is not written (");
+        let found = format!("{name}: found the name of a format that is not written ({format})");
+        let expected = format!("{found}, expected a name that ends in .csv, or in .parquet");
         assert!(output.status.code() == Some(2) && text(&output).contains(&expected), "{}", text(&output));
     }
     assert!(compensate(&copy, &["f.pq"]).status.success());

@@ -103,7 +103,7 @@ fn what_is_no_record_is_refused() {
     refused(&["noise", "nothing.csv"], "no such file");
     fs::write(
         copy.out().join("still.csv"),
-        (0..200).fold("t,f1\n".to_owned(), |rows, k| rows + &k.to_string() + ",1\n"),
+        (0..600).fold("t,f1\n".to_owned(), |rows, k| rows + &k.to_string() + ",1\n"),
     )
     .unwrap();
     let output = copy.run(&["noise", "still.csv", "--readings", "f1"]);
