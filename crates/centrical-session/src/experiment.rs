@@ -3,6 +3,7 @@
 mod attitude;
 mod candidates;
 mod columns;
+mod extensions;
 mod file_marks;
 mod folder;
 mod form;

@@ -5,13 +5,14 @@ use std::path::{Path, PathBuf};
 use centrical::plan::{Candidates, Costs, Criterion, Goal, Noise, PlanError, Robustness, Scenario, Task};
 use centrical::{Experiment, MeasurementModel, STANDARD_GRAVITY, SetPoint};
 
+use super::extensions::named_extensions;
 use super::folder::Folder;
 use super::form::{self, CandidatesTable, Form, MountingTable, Steps};
 use super::plan::{ExpectedValues, earlier, expected_of, noise, noise_density, noise_floor};
 use super::prior;
 use super::rests::RestTable;
 use super::schedule::{FASTEST, duration};
-use super::session::{Session, experiment_file, named_extensions, read_text};
+use super::session::{Session, experiment_file, read_text};
 use super::toml_path::TomlPath;
 use crate::error::{Error, quoted};
 use crate::quantity::{NotThatQuantity, Quantity};

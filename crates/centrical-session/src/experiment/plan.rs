@@ -9,10 +9,11 @@ use centrical::{Kind, MeasurementModel, Parameter, TypeB, Weight};
 use nalgebra::Matrix3;
 use serde::Deserialize;
 
+use super::extensions::{extensions, pair_relation};
 use super::folder::Folder;
 use super::form::{Form, PlanTable, PresetForm, PresetTable};
 use super::rests::{self, RestTable};
-use super::session::{Session, experiment_file, extensions, pair_relation, read_text};
+use super::session::{Session, experiment_file, read_text};
 use super::speeds::preset_speeds;
 use super::toml_path::TomlPath;
 use super::uncertainty::ANY_BIAS;

@@ -4,12 +4,11 @@ use std::f64::consts::PI;
 use std::path::{Path, PathBuf};
 
 use centrical::TypeB;
-use centrical::{
-    Centrifuge, ErrorModel, Experiment, Extension, MeasurementModel, PairRelation, Rotation, SetPoint, Site,
-};
+use centrical::{Centrifuge, ErrorModel, Experiment, Extension, MeasurementModel, Rotation, SetPoint, Site};
 
+use super::extensions::{extensions, pair_relation};
 use super::folder::Folder;
-use super::form::{Form, ModelTable, MountingTable, SiteTable};
+use super::form::{Form, MountingTable, SiteTable};
 use super::plateaus::PlateauTable;
 use super::prior::{self, PriorEntry};
 use super::rests::{self, RestTable};
@@ -372,42 +371,6 @@ fn rotation(file: &Path, text: &str) -> Result<Rotation, Error> {
         "-3" => Ok(Rotation::Negative),
         _ => {
             Err(TomlPath::table(file, "centrifuge").unexpected("rotation", quoted(text.as_bytes()), "\"+3\" or \"-3\""))
-        }
-    }
-}
-
-pub(crate) fn extensions(file: &Path, table: &ModelTable) -> Result<Vec<Extension>, Error> {
-    named_extensions(&TomlPath::table(file, "model"), &table.extensions)
-}
-
-pub(crate) fn named_extensions(at: &TomlPath, names: &[String]) -> Result<Vec<Extension>, Error> {
-    let mut extensions = Vec::new();
-    for name in names {
-        let found = quoted(name.as_bytes());
-        let Some(extension) = Extension::named(name) else {
-            let known: Vec<&str> = Extension::NAMED.iter().map(|(name, _)| *name).collect();
-            let expected = format!("one of {}", known.join(", "));
-            return Err(at.unexpected("extensions", found, expected));
-        };
-        if extensions.contains(&extension) {
-            let expected = "every extension once";
-            return Err(at.unexpected("extensions", format!("{found} a second time"), expected));
-        }
-        extensions.push(extension);
-    }
-    Ok(extensions)
-}
-
-/// How the shifts of a pair are related; free if not stated, as without an arm.
-pub(crate) fn pair_relation(file: &Path, table: &ModelTable) -> Result<PairRelation, Error> {
-    let text = table.pair_relation.as_deref().unwrap_or("free");
-    match text {
-        "common" => Ok(PairRelation::Common),
-        "opposite" => Ok(PairRelation::Opposite),
-        "free" => Ok(PairRelation::Free),
-        _ => {
-            let expected = "\"common\", \"opposite\" or \"free\"";
-            Err(TomlPath::table(file, "model").unexpected("pair_relation", quoted(text.as_bytes()), expected))
         }
     }
 }

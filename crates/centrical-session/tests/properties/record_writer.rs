@@ -45,7 +45,8 @@ proptest! {
         writer.write(record.as_slice()).unwrap();
         writer.finish().unwrap();
         let compensated = compensate_record(&compensation, &input, &Columns::default(), &output, &unwatched).unwrap();
-        let expected = CompensatedRecord { readings: rows as u64, ..CompensatedRecord::default() };
+        let unit = "m/s^2".to_owned();
+        let expected = CompensatedRecord { unit, readings: rows as u64, ..CompensatedRecord::default() };
         prop_assert_eq!(compensated, expected);
         compensation.apply_all(record.f_z.each_mut().map(Vec::as_mut_slice)).unwrap();
         prop_assert!(read(&output) == record);
