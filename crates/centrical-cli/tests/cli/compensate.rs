@@ -158,7 +158,7 @@ fn rows_that_lack_a_reading() {
     assert_eq!(copy.run(&arguments).status.code(), Some(2));
     copy.edit("experiment.toml", |text| text.replace("[columns]\n", "[columns]\nmissing_readings = \"left out\"\n"));
     let output = copy.run(&arguments);
-    assert!(output.status.success() && text(&output).contains("2 readings compensated"), "{}", text(&output));
+    assert!(output.status.success() && text(&output).contains("2 readings in m/s^2 compensated"), "{}", text(&output));
     let written = fs::read_to_string(copy.out().join("f.csv")).unwrap();
     let stamps: Vec<&str> = written.lines().skip(1).filter_map(|line| line.split(',').next()).collect();
     assert_eq!(stamps, [stamp(0), stamp(3)]);
