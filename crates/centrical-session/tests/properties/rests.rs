@@ -297,8 +297,11 @@ fn a_bound_of_rests_needs_rests() {
     assert!(Session::read(folder.path()).is_ok(), "{:?}", Session::read(folder.path()).err());
     assert!(Session::read_before_rests(folder.path()).is_ok());
     fs::write(&file, stated("radius").replace("20 ppm", "20 um")).unwrap();
+    // A laboratory may state the same quantities of all its sessions.
+    assert!(Session::read(folder.path()).is_ok(), "{:?}", Session::read(folder.path()).err());
+    fs::write(&file, stated("angle_tilt").replace("20 ppm", "20 urad")).unwrap();
     let message = Session::read(folder.path()).unwrap_err().to_string();
-    assert!(message.contains("radius: found \"20 um\", expected no such key without a [[mounting]]"), "{message}");
+    assert!(message.contains("angle_tilt: found \"20 urad\", expected no such bound"), "{message}");
 }
 
 #[test]

@@ -72,7 +72,7 @@ fn arrow_files_and_streams() {
 #[test]
 fn arrow_that_is_no_record() {
     let cases = [
-        ("null.feather", ", f2: found 1 values missing, expected a value in every row"),
+        ("null.feather", ", f2: found 1 values missing, expected a value in every row, NaN where a reading is missing"),
         ("text.arrows", ", f2: found a column without numbers, expected a number in m/s^2"),
     ];
     for (name, expected) in cases {
