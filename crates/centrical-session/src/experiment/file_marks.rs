@@ -37,13 +37,13 @@ impl FileMarks {
         further
     }
 
-    /// Marks a file by what it holds, before it is read.
+    /// Marks a file by what it holds, before it is read; one of more than 64 MiB, which may be no such file at all, by length and time alone.
     ///
     /// # Errors
     /// If it cannot be read.
     pub fn mark(&self, source: &Source) -> Result<(), Error> {
         let look = look(source.name());
-        let sha256 = Some(hash(source)?);
+        let sha256 = (source.length() <= 64 << 20).then(|| hash(source)).transpose()?;
         self.marks().insert(source.name().to_owned(), Mark { look, sha256 });
         Ok(())
     }
