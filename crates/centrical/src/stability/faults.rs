@@ -24,8 +24,8 @@ pub(super) fn refuse_held(readings: &[f64]) -> Result<(), NoiseError> {
     if is_held { Err(NoiseError::Held { repeated, readings: readings.len(), longest }) } else { Ok(()) }
 }
 
-/// Refuses readings without spikes that pile up at an end of their range, or of which more than a fiftieth is missing in short gaps. The
-/// means over `n` readings of which a part `p` is missing have the deviation of `(1 - p) n`: by `p/2` larger.
+/// Refuses readings without spikes that pile up at an end of their range, or lack more than a fiftieth in short gaps. Means over `n`
+/// readings that lack a part `p` have the deviation of `(1 - p) n`: it is larger by `p/2`.
 pub(super) fn refuse_faults(readings: &[f64]) -> Result<(), NoiseError> {
     /// A gap longer than this part of the record is a long one: averages that lack so much are left out.
     const LONG: usize = 200;

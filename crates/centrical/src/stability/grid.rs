@@ -150,7 +150,7 @@ mod tests {
         let slower = |i: i32| f64::from(i) * 0.01 + f64::from((i - 15_000).max(0)) * 0.004;
         let changing: Vec<f64> = (0..30_000).map(slower).collect();
         assert!(matches!(Grid::of(&changing, &readings, &unwatched), Err(NoiseError::ChangingRate { .. })));
-        // A clock that is fast by a thousandth for half of the record is none.
+        // A clock that is fast by a thousandth for half of the record changes no rate.
         let drifting: Vec<f64> =
             (0..30_000).map(|i| f64::from(i) * 0.01 + f64::from((i - 15_000).max(0)) * 1e-5).collect();
         assert!(Grid::of(&drifting, &readings, &unwatched).is_ok());
