@@ -45,8 +45,7 @@ pub enum NotInvertible {
     #[error(
         "over twice the range the gain changes by up to {gain_change:.3} of the gain at zero, expected at most \
          {limit:.3}: the inverse is certain over {factor:.3} of this range, within {:.1} m/s^2",
-        // Rounded up it would not be certain there.
-        0.999 * factor * range
+        certain_range(*factor, *range)
     )]
     TooNonlinear {
         /// Bound on the change of gain.
@@ -58,6 +57,21 @@ pub enum NotInvertible {
         /// The range [m/s^2].
         range: f64,
     },
+}
+
+impl NotInvertible {
+    /// The range that could be asked for [m/s^2]; `None` if there is no such range.
+    pub fn certain_range(&self) -> Option<f64> {
+        match self {
+            Self::TooNonlinear { factor, range, .. } if *factor > 0.0 => Some(certain_range(*factor, *range)),
+            _ => None,
+        }
+    }
+}
+
+/// A little below the range: rounded up, the inverse would not be certain there.
+fn certain_range(factor: f64, range: f64) -> f64 {
+    0.999 * factor * range
 }
 
 /// A reading that no specific force within the range gives.

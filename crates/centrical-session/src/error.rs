@@ -295,12 +295,10 @@ impl Error {
 
 /// The range in g that was too large, and the one that could be asked for.
 fn certain_range(source: &NotInvertible) -> String {
-    let NotInvertible::TooNonlinear { factor, range, .. } = source else { return String::new() };
-    // As the message has it in m/s^2.
-    let [range, certain] = [*range, 0.999 * factor * range].map(|f| f / STANDARD_GRAVITY);
-    if *factor == 0.0 {
+    let (NotInvertible::TooNonlinear { range, .. }, Some(certain)) = (source, source.certain_range()) else {
         return String::new();
-    }
+    };
+    let [range, certain] = [*range, certain].map(|f| f / STANDARD_GRAVITY);
     format!("; found a range of {range:.3} g, expected one up to {certain:.3} g (--range)")
 }
 

@@ -3,7 +3,7 @@
 use super::deviation::Deviation;
 use super::error::NoiseError;
 use super::estimator::Estimator;
-use super::faults::{refuse_faults, refuse_held};
+use super::faults::{is_fine, refuse_faults, refuse_held};
 use super::grid::Grid;
 use super::phase::{BridgedGaps, Phase};
 use super::spectrum::Spectrum;
@@ -52,7 +52,8 @@ impl Analysis {
     ) -> Result<Analysis, NoiseError> {
         advance(progress, ())?;
         let mut grid = Grid::of(t, y, progress)?;
-        let held = refuse_held(&grid.readings);
+        let is_fine = is_fine(&grid.readings, progress)?;
+        let held = refuse_held(&grid.readings, is_fine);
         let spikes = leave_out_spikes(&mut grid.readings, progress)?;
         let phase = Phase::integrate(&grid.readings, grid.interval, progress)?;
         let seen = || grid.readings.iter().filter(|y| y.is_finite());
@@ -73,7 +74,8 @@ impl Analysis {
                 progress,
             ))?,
             terms: unless_stopped(
-                held.and_then(|()| refuse_faults(&grid.readings)).and_then(|()| NoiseTerms::of(&phase, progress)),
+                held.and_then(|()| refuse_faults(&grid.readings, is_fine))
+                    .and_then(|()| NoiseTerms::of(&phase, progress)),
             )?,
         })
     }

@@ -77,8 +77,8 @@ impl Estimator {
         }
     }
 
-    /// The variance at averaging factor `m`, in the square of the readings' unit, of the phase's for time deviations, and the number of terms of
-    /// which it is the mean; `None` if the record, less its gaps, has no term that long.
+    /// The variance at averaging factor `m`, and the number of terms that it averages. Its unit is the square of that of the readings; for
+    /// time deviations, of the phase. `None` if the record, less its gaps, has no term that long.
     pub fn variance(self, phase: &Phase, m: usize) -> Option<(f64, usize)> {
         self.watched_variance(phase, m, &Watch::new(&unwatched)).map(|raw| (raw.value, raw.terms))
     }

@@ -124,7 +124,8 @@ fn check_interval(tau0: f64) -> Result<(), NoiseError> {
     if tau0.is_finite() && tau0 > 0.0 { Ok(()) } else { Err(NoiseError::BadInterval { found: tau0 }) }
 }
 
-fn missing_runs(readings: &[f64]) -> Vec<Range<usize>> {
+/// The runs of readings that are missing.
+pub(super) fn missing_runs(readings: &[f64]) -> Vec<Range<usize>> {
     let mut runs = Vec::new();
     let mut k = 0;
     while k < readings.len() {

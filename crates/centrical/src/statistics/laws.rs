@@ -4,7 +4,7 @@ use statrs::distribution::{ChiSquared, ContinuousCDF};
 use statrs::function::beta::beta_reg;
 use statrs::function::gamma::gamma_ur;
 
-/// A statistic, and what chance makes of it if nothing but chance is at work.
+/// A test of what chance alone explains: its statistic and the probability of one as large.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Test {
     /// chi^2, or an F statistic.
@@ -16,7 +16,7 @@ pub struct Test {
 }
 
 impl Test {
-    /// The test of a chi^2, which is 0 as a probability where it is not a finite number.
+    /// The test of a chi^2; its probability is 0 where it is not a finite number.
     pub fn chi_squared(statistic: f64, degrees_of_freedom: usize) -> Self {
         Self { statistic, degrees_of_freedom, probability: chi_squared_tail(statistic, degrees_of_freedom) }
     }
