@@ -58,8 +58,7 @@ fn protection(effect: &RestsOn) -> String {
             effect.parameter
         ),
         None => format!(
-            "protect: state {bound} under [uncertainty]; as an unknown it would leave {} undetermined",
-            effect.parameter
+            "protect: state {bound} under [uncertainty]; as an unknown it would leave parameters of the instrument undetermined"
         ),
     }
 }

@@ -253,3 +253,38 @@ fn unseen_effects_do_what_is_said() {
         assert!((shift / effect.shift - 1.0).abs() < 0.1, "{name}: {shift:e} {:e}", effect.shift);
     }
 }
+
+/// The price of an effect is what a fit with it as an unknown pays, and there is no price where that fit loses a parameter of the instrument.
+#[test]
+fn the_price_of_an_effect_is_that_of_a_fit() {
+    let model = source_model();
+    let mut random = Random::new(79);
+    let x = truth(&model, 0.3, &mut random);
+    let observed = session(&model, &x, &mut random);
+    let data = Data::new(&model, observed.clone()).unwrap();
+    let calibration = Calibration::exact(&data).unwrap();
+    let unseen = Rivals::of(&calibration, &unwatched).unwrap().rests_on(&unwatched).unwrap();
+    assert!(unseen.len() > 60, "{}", unseen.len());
+    let mut without_price = Vec::new();
+    for effect in &unseen {
+        let richer = model.with_rivals(&[effect.rival]);
+        let data = Data::new(&richer, observed.clone()).unwrap();
+        let fit = Calibration::exact(&data).unwrap().into_fit();
+        let uncertainty =
+            |j: usize| fit.standard_uncertainty(richer.parameters().find(&model.parameters()[j].name).unwrap());
+        let name = effect.rival.name();
+        let mut instrument = (0..model.parameters().len()).filter(|&j| model.parameters()[j].is_of_instrument());
+        let loses = instrument.any(|j| uncertainty(j).is_none());
+        assert_eq!(effect.price.is_none(), loses, "{name}: {:?}", effect.price);
+        let Some(price) = effect.price else {
+            without_price.push(name);
+            continue;
+        };
+        let paid =
+            uncertainty(effect.parameter).unwrap() / calibration.fit().standard_uncertainty(effect.parameter).unwrap();
+        println!("{name}: {price:.3} said, {paid:.3} paid");
+        assert!((price / paid - 1.0).abs() < 0.1, "{name}: {price} said, {paid} paid");
+    }
+    println!("without a price: {without_price:?}");
+    assert!(!without_price.is_empty());
+}

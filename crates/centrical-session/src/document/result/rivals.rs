@@ -70,7 +70,7 @@ pub struct RestsOn {
     /// Largest error of a compensated reading at the forces of the session [m/s^2].
     pub reading: f64,
     /// Factor on the standard uncertainty of the parameter if the effect were an unknown of the fit; null when the data would
-    /// then not determine it.
+    /// then not determine every parameter of the instrument that they determine now.
     pub price_as_unknown: Option<f64>,
 }
 

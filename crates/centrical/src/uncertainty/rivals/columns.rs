@@ -149,9 +149,13 @@ impl Seen {
         self.vectors.tr_mul(t).iter().zip(&self.values).map(|(component, value)| component * component / value).sum()
     }
 
-    /// The part of `t` in which nothing is seen.
-    pub fn beyond(&self, t: &DVector<f64>) -> DVector<f64> {
-        t - &self.vectors * self.vectors.tr_mul(t)
+    /// The part of `t` outside the directions whose square is above `least`.
+    pub fn beyond(&self, t: &DVector<f64>, least: f64) -> DVector<f64> {
+        let mut rest = t.clone();
+        for (direction, _) in self.vectors.column_iter().zip(&self.values).filter(|(_, value)| **value > least) {
+            rest.axpy(-direction.dot(t), &direction, 1.0);
+        }
+        rest
     }
 
     /// `S^+`.

@@ -3,12 +3,13 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use nalgebra::{DVector, Vector3};
+use nalgebra::{DMatrix, Vector3};
 
 use super::catalogue::{Rivals, Suspect};
 use super::columns::Columns;
 use super::power::non_centrality;
-use crate::model::{FitError, Kind, Parameter, Rival};
+use crate::model::{FitError, Kind, Parameter, Rival, Weight};
+use crate::observability::study::Study;
 use crate::progress::{OnProgress, advance};
 use crate::uncertainty::verdict::Level;
 
@@ -19,8 +20,11 @@ const POWER: f64 = 0.8;
 /// this part of its standard uncertainty.
 const HARMFUL: f64 = 0.1;
 
-/// A change below this part of another is rounding.
-const UNSEEN: f64 = 1e-6;
+/// Below this part of its length a combination may be seen in second-order traces alone, which the structure of an experiment does not count.
+const SECOND_ORDER: f64 = 1e-2;
+
+/// A change below this part of a standard uncertainty is rounding.
+const ROUNDING: f64 = 1e-6;
 
 /// What a result rests on the absence of: the worst unknown of one rival.
 #[derive(Debug, Clone, PartialEq)]
@@ -41,7 +45,7 @@ pub struct Unseen {
     /// Largest error of a compensated reading at the forces of the session [m/s^2].
     pub reading: f64,
     /// Factor on the standard uncertainty of the parameter if the rival were an unknown of the fit; `None` if the data would then
-    /// not determine the parameter.
+    /// not determine every parameter of the instrument that they determine now.
     pub price: Option<f64>,
 }
 
@@ -127,28 +131,55 @@ impl Rivals<'_> {
             (size.is_some() || harm > HARMFUL).then_some((c, size, moved, parameter, harm))
         });
         let worst = candidates.max_by(|(.., a), (.., b)| a.total_cmp(b));
-        Ok(worst.map(|(c, size, moved, parameter, harm)| {
-            let unseen = Unseen {
-                rival: *rival,
-                unknown: unknowns[c].clone(),
-                size,
-                parameter,
-                shift: moved[parameter],
-                standard_uncertainties: harm,
-                reading: self.reading_error(moved.as_slice(), forces_z),
-                price: self.price(suspect, &shifts.row(parameter).transpose(), parameter),
-            };
-            (c, unseen)
-        }))
+        let Some((c, size, moved, parameter, harm)) = worst else { return Ok(None) };
+        let unseen = Unseen {
+            rival: *rival,
+            unknown: unknowns[c].clone(),
+            size,
+            parameter,
+            shift: moved[parameter],
+            standard_uncertainties: harm,
+            reading: self.reading_error(moved.as_slice(), forces_z),
+            price: self.price(suspect, &shifts, parameter)?,
+        };
+        Ok(Some((c, unseen)))
     }
 
     /// With the rival as an unknown the variance of a parameter grows by `g^T (s^T s)^+ g`, where `g` is its change by one unit
-    /// of each column; a part of `g` that is not seen leaves the parameter undetermined.
-    fn price(&self, suspect: &Suspect, g: &DVector<f64>, parameter: usize) -> Option<f64> {
-        let u = self.calibration.fit().standard_uncertainty(parameter)?;
-        let unseen = suspect.seen.beyond(g).norm();
-        let determined = unseen <= UNSEEN * g.norm() || unseen <= UNSEEN * u;
-        determined.then(|| (1.0 + suspect.seen.statistic(g) / (u * u)).sqrt())
+    /// of each column. There is no price where the fit would lose a parameter of the instrument that it determines now.
+    fn price(&self, suspect: &Suspect, shifts: &DMatrix<f64>, parameter: usize) -> Result<Option<f64>, FitError> {
+        let Some(u) = self.calibration.fit().standard_uncertainty(parameter) else { return Ok(None) };
+        let g = shifts.row(parameter).transpose();
+        // The rest of a session determines what a rival in a part of it might hide.
+        let is_lost = if Rival::COMMON.contains(&suspect.rival) {
+            self.loses_instrument(suspect, shifts)?
+        } else {
+            suspect.seen.beyond(&g, 0.0).norm() > ROUNDING * u
+        };
+        Ok((!is_lost).then(|| (1.0 + suspect.seen.statistic(&g) / (u * u)).sqrt()))
+    }
+
+    /// Whether a parameter of the instrument that is determined without the unknowns of the rival is lost with them: at `X = 0`,
+    /// where no second-order traces pass for knowledge. Only one that moves with what is hardly seen can be lost.
+    fn loses_instrument(&self, suspect: &Suspect, shifts: &DMatrix<f64>) -> Result<bool, FitError> {
+        let (fit, data) = (self.calibration.fit(), self.calibration.data());
+        let parameters = data.model().parameters();
+        let may_be_lost = |&j: &usize| {
+            let beyond = suspect.seen.beyond(&shifts.row(j).transpose(), SECOND_ORDER.powi(2)).norm();
+            fit.standard_uncertainty(j).is_some_and(|u| beyond > ROUNDING * u)
+        };
+        let instrument = (0..parameters.len()).filter(|&j| parameters[j].is_of_instrument());
+        let doubtful: Vec<usize> = instrument.filter(may_be_lost).collect();
+        if doubtful.is_empty() {
+            return Ok(false);
+        }
+        let weights = data.observations().iter().map(Weight::from).collect();
+        let study = Study::at_zero(data.model().with_rivals(&[suspect.rival]), weights)?;
+        let is_lost = |j: usize| {
+            let there = study.model().parameters().find(&parameters[j].name);
+            there.is_none_or(|j| !study.observability().is_estimable(j))
+        };
+        Ok(doubtful.into_iter().any(is_lost))
     }
 
     /// The estimable parameter of the instrument that moves most, and by how many standard uncertainties.
