@@ -105,7 +105,7 @@ impl Reduced {
         scheduled.enumerate().map(taken).collect()
     }
 
-    /// The measurement model of the session at [`Reduced::set_points`].
+    /// The measurement model of the session at [`Reduced::set_points`], with the uncertainties that the session states.
     ///
     /// # Errors
     /// As [`Session::model`].

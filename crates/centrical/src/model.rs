@@ -28,7 +28,6 @@ pub(crate) mod plateau;
 pub(crate) mod position;
 pub(crate) mod prior;
 mod rival;
-mod share;
 mod single_rest;
 mod stated;
 mod unknowns;

@@ -1,8 +1,6 @@
 //! The report of a calibration: verdict, session, parameters, budget, figures.
 
-use centrical_session::{
-    CalibrationResult, ParameterBudget, ParameterEstimate, UnitHistoryReport, ValiditySummary, customary,
-};
+use centrical_session::{CalibrationResult, ParameterEstimate, UnitHistoryReport, ValiditySummary, customary};
 
 use super::axes::axes;
 use super::conformity::{judged_in_words, rule};
@@ -322,25 +320,27 @@ fn budget(result: &CalibrationResult, language: Language) -> Option<Table> {
         Column { title: title.to_owned(), share, align }
     };
     let columns = titles.into_iter().enumerate().map(column).collect();
-    let row = |parameter: &ParameterEstimate| {
+    let row = |(j, parameter): (usize, &ParameterEstimate)| {
         let (factor, unit) = customary(&parameter.unit, parameter.group);
         let shown = |value: Option<f64>| value.map_or(String::new(), |value| language.significant(value * factor, 2));
-        let ParameterBudget { sources, combined, degrees_of_freedom } = result.budget_of(&parameter.name)?;
+        let of_parameter = |numbers: &[Option<f64>]| numbers.get(j).copied().flatten();
+        let combined = of_parameter(&budget.combined);
         let negligible = NEGLIGIBLE * combined.unwrap_or(0.0);
         let of_source = |value: Option<f64>| {
             if value.is_some_and(|value| value < negligible) { "–".to_owned() } else { shown(value) }
         };
         let mut cells = vec![symbol(&parameter.name), language.unit(unit)];
-        cells.extend(sources.into_iter().map(of_source));
+        cells.extend(budget.sources.iter().map(|source| of_source(of_parameter(&source.standard_uncertainty))));
         if combined.is_some() {
-            let degrees = degrees_of_freedom.map_or("∞".to_owned(), |nu| language.fixed(nu.floor(), 0));
+            let degrees =
+                of_parameter(&budget.degrees_of_freedom).map_or("∞".to_owned(), |nu| language.fixed(nu.floor(), 0));
             cells.extend([shown(combined), degrees]);
         } else {
             cells.extend([messages.not_determined.to_owned(), String::new()]);
         }
-        Some(Row::Cells(cells))
+        Row::Cells(cells)
     };
-    let rows = result.parameters.iter().filter_map(row).collect();
+    let rows = result.parameters.iter().enumerate().map(row).collect();
     Some(Table { kind: TableKind::Numbers, columns, rows })
 }
 

@@ -26,10 +26,10 @@ pub(crate) fn expanded_of_normal(standard_uncertainty: f64) -> f64 {
     COVERAGE_FACTOR * standard_uncertainty
 }
 
-/// Expanded uncertainty of a parameter of the result; `None` if it is not determined.
+/// Expanded uncertainty of a parameter of the result; `None` if it is not determined. The standard uncertainty is that of the estimate, with
+/// what the session states; the budget gives the degrees of freedom.
 pub(crate) fn expanded(result: &CalibrationResult, parameter: &ParameterEstimate) -> Option<Expanded> {
-    let degrees_of_freedom = result.budget_of(&parameter.name).and_then(|budget| budget.degrees_of_freedom);
-    Some(expanded_of(parameter.standard_uncertainty?, degrees_of_freedom))
+    Some(expanded_of(parameter.standard_uncertainty?, result.degrees_of_freedom(&parameter.name)))
 }
 
 /// `U = k u` of a quantity with these effective degrees of freedom, infinite if none are given.

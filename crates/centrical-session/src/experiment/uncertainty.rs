@@ -1,4 +1,4 @@
-//! The table `[uncertainty]`: what the laboratory states of the quantities that the fit takes as exact.
+//! The table `[uncertainty]`: what the laboratory states of the quantities that the fit takes as exact. A number without a unit is in SI.
 
 use std::collections::BTreeMap;
 use std::path::Path;

@@ -7,10 +7,11 @@ use std::borrow::Cow;
 use nalgebra::{DMatrix, DVector, Vector3};
 
 use super::curvature;
-use super::data::{Data, Design};
+use super::data::Data;
 use super::estimates::{Fit, Termination};
 use super::structure::{Hold, Structure};
 use crate::linalg::least_squares::LeastSquares;
+use crate::model::plateau::Design;
 use crate::model::{FitError, Linearisation, Parameter};
 use crate::progress::{OnProgress, advance, unwatched};
 

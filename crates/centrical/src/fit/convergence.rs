@@ -8,9 +8,9 @@
 use nalgebra::DMatrix;
 
 use super::calibration::Calibration;
-use super::filter::Readings;
 use super::global::Global;
 use crate::linalg::least_squares::LeastSquares;
+use crate::model::plateau::Readings;
 use crate::model::{FitError, Parameter};
 
 /// The uncertainties at some stage of the session.

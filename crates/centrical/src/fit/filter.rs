@@ -13,10 +13,9 @@
 mod information;
 pub(super) mod innovation;
 mod lifetimes;
-mod readings;
 
 pub use crate::linalg::factor::Factor;
+pub use crate::model::plateau::Readings;
 pub use information::Filter;
 pub(super) use information::smoothed;
 pub use lifetimes::Lifetimes;
-pub use readings::Readings;

@@ -11,13 +11,14 @@
 use nalgebra::{DVector, Matrix3};
 
 use super::batch::HALVING_LIMIT;
-use super::data::{Data, Design};
+use super::data::Data;
 use super::filter::innovation::Unexplained;
 use super::global::{Attitude, PlateauEquations};
 use super::linearised::Linearised;
 use super::past::Past;
 use super::structure::{Held, Hold};
 use crate::linalg::least_squares::LeastSquares;
+use crate::model::plateau::Design;
 use crate::model::{FitError, Kind, MeasurementModel, Observation};
 use crate::observability::Observability;
 use crate::statistics::Test;

@@ -8,10 +8,9 @@ use std::collections::HashMap;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::data::Design;
-use super::filter::Readings;
 use crate::linalg::factor::Factor;
 use crate::linalg::least_squares::{Elimination, Own};
+use crate::model::plateau::{Design, Readings};
 use crate::model::{MeasurementModel, Prior};
 
 /// The unknowns of a model that several plateaus contain.

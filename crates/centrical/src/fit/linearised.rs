@@ -2,9 +2,8 @@
 
 use nalgebra::{DVector, Matrix3, Vector3};
 
-use super::filter::Readings;
 use crate::linalg::factor::Factor;
-use crate::model::plateau::Whitener;
+use crate::model::plateau::{Readings, Whitener};
 use crate::model::{FitError, Linearisation, MeasurementModel, Observation};
 
 /// Plateaus that read alike, linearised at a point of all unknowns.

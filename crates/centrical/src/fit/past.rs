@@ -15,11 +15,10 @@ use std::sync::Arc;
 
 use nalgebra::{DVector, Vector3};
 
-use super::data::Design;
-use super::filter::Readings;
 use super::global::{Attitude, Gathered, Global, PlateauEquations};
 use super::linearised::Linearised;
 use crate::linalg::factor::Factor;
+use crate::model::plateau::{Design, Readings};
 use crate::model::{FitError, MeasurementModel, Observation};
 
 /// Plateaus linearised at a reference, and at zero.

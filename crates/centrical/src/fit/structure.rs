@@ -2,10 +2,11 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::data::{Data, Design};
+use super::data::Data;
 use super::departure::departs;
 use super::filter;
 use crate::linalg::least_squares::{LeastSquares, Own};
+use crate::model::plateau::Design;
 use crate::model::{FitError, Linearisation, Parameter, Prior};
 use crate::observability::Observability;
 
@@ -25,7 +26,7 @@ impl Assembly {
     /// The equations of the plateaus and of the priors, linearised at `x`.
     pub fn design(self, data: &Data, x: &[f64], linearisations: &[Linearisation]) -> Result<Design, FitError> {
         let design = match self {
-            Self::Batch => Design::of(data, linearisations)?,
+            Self::Batch => Design::of(data.observations(), linearisations, data.unknowns())?,
             Self::Filter => filter::smoothed(data, linearisations)?,
         };
         Ok(design.with_priors(data.model().priors(), data.model().influences().len(), x))

@@ -1,10 +1,11 @@
-//! What acts on the readings beyond the source's unknowns: as a further unknown, as a stated uncertainty, or as a rival that
-//! the residuals are asked for.
+//! What acts on the readings beyond the source's unknowns, and how it enters a plateau: as a further unknown, as a stated uncertainty,
+//! or as a rival that the residuals are asked for.
 
 use centrical_compensate::Monomial;
+use nalgebra::Vector3;
 
 use super::course::{Course, Law};
-use super::experiment::Experiment;
+use super::experiment::{Experiment, SetPoint, Site};
 
 /// An effect on the readings, per unit of its size. Axes are 0, 1, 2.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -188,6 +189,26 @@ impl Scope {
     }
 }
 
+/// How one unit of an effect enters a plateau.
+pub(super) enum Share {
+    /// Not at all.
+    None,
+    /// Tilt of the rotation axis about a reference axis [rad per unit].
+    Tilt(usize),
+    /// Small turn of the unit, instrument axes [rad per unit].
+    Turn(Vector3<f64>),
+    /// Displacement in arm axes [m per unit].
+    Arm(Vector3<f64>),
+    /// Displacement of a coordinate of a proof mass [m per unit].
+    Coordinate { coordinate: usize, mass: usize },
+    /// Change of the rate squared `w` [rad^2/s^2 per unit].
+    Rate(f64),
+    /// Change of gravity [m/s^2 per unit].
+    Gravity,
+    /// Added to the readings [m/s^2 per unit].
+    Reading(Vector3<f64>),
+}
+
 impl Effect {
     /// The scale of a newtonometer in one mounting, relative.
     pub(super) fn scale_of_mounting(axis: usize, mounting: usize) -> Self {
@@ -278,6 +299,63 @@ impl Effect {
             | Self::Latitude
             | Self::Disturbance { .. }
             | Self::Rounding { .. } => Scope::Session,
+        }
+    }
+
+    /// How one unit of it enters a plateau.
+    pub(super) fn share(self, experiment: &Experiment, set_point: &SetPoint) -> Share {
+        let here = set_point.mounting;
+        let is_off_arm = self.is_of_arm() && !experiment.is_on_arm(here);
+        if is_off_arm || !self.scope().has(experiment, here) {
+            return Share::None;
+        }
+        let r0_y = experiment.arm_of(set_point);
+        let omega_squared = set_point.omega * set_point.omega;
+        let only = |condition: bool, share: Share| if condition { share } else { Share::None };
+        let along = |axis: usize| Vector3::ith(axis, 1.0);
+        match self {
+            Self::ElasticTurn { law, axis, .. } => Share::Turn(Vector3::ith(axis, law.value(omega_squared, r0_y.x))),
+            Self::ArmTurn { law, axis } => {
+                let turn_y = Vector3::ith(axis, law.value(omega_squared, r0_y.x));
+                Share::Turn(experiment.position_of(set_point).p_zy * turn_y)
+            }
+            Self::PositionTurn { axis, .. } | Self::MountingTurn { axis, .. } => Share::Turn(along(axis)),
+            Self::SpinTurn { axis, .. } => only(!set_point.is_rest(), Share::Turn(along(axis))),
+            Self::MountingTilt { axis, .. } => only(set_point.is_rest(), Share::Tilt(axis)),
+            Self::AngleTilt { axis, first } => {
+                only(set_point.rests_at(experiment.set_points[first].angle), Share::Tilt(axis))
+            }
+            Self::RestTilt { axis, .. } | Self::AttitudeTilt { axis, .. } => Share::Tilt(axis),
+            Self::ArmStretch { law, .. } => Share::Arm(Vector3::x() * (r0_y.x * law.value(omega_squared, r0_y.x))),
+            Self::RadiusScale => Share::Arm(*r0_y),
+            Self::SeatPlace { axis, .. } | Self::PositionShift { axis, .. } | Self::MountingShift { axis, .. } => {
+                Share::Arm(along(axis))
+            }
+            Self::Coordinate { coordinate, mass } => Share::Coordinate { coordinate, mass },
+            Self::SpeedScale => Share::Rate(omega_squared),
+            Self::OneSpeed { first } => {
+                only(experiment.set_points[first].has_speed(set_point.omega), Share::Rate(omega_squared))
+            }
+            Self::EarthRate => Share::Rate(set_point.omega * 2.0),
+            Self::Gravity => Share::Gravity,
+            Self::Latitude => {
+                let cosine = experiment.site.latitude.map_or(0.0, f64::cos);
+                Share::Rate(set_point.omega * 2.0 * Site::EARTH_RATE * cosine)
+            }
+            Self::Monomial { axis, monomial, .. } => {
+                Share::Reading(Vector3::ith(axis, monomial.value(experiment.nominal(set_point).into())))
+            }
+            Self::Disturbance { axis, follows } => {
+                Share::Reading(Vector3::ith(axis, follows.value(experiment, set_point, axis)))
+            }
+            Self::Turning { axis, .. } => {
+                // Only the acceleration along the vertical counts: that across it turns the specific force.
+                let position = experiment.position_of(set_point);
+                Share::Reading(position.p_zy.column(2) * position.bend_z[axis])
+            }
+            Self::Rounding { axis, first } => {
+                only(set_point.history.repeats == Some(first), Share::Reading(along(axis)))
+            }
         }
     }
 }

@@ -12,13 +12,12 @@ use std::f64::consts::FRAC_PI_2;
 
 use nalgebra::{Matrix3, Matrix3x2, Vector3};
 
-use super::effect::Effect;
+use super::effect::{Effect, Share};
 use super::experiment::SetPoint;
 use super::frame::{carousel, hat, rotation, rotation_rate};
 use super::measurement::MeasurementModel;
 use super::parameters::OfPosition;
 use super::plateau::Linearisation;
-use super::share::Share;
 
 impl MeasurementModel {
     /// Mean reading `f'` [m/s^2] of a plateau at the unknowns `x` (in the order of [`super::Parameters`]).
@@ -132,7 +131,7 @@ impl MeasurementModel {
             geometry.rho_z[(2, 2)] += x[column + 1];
         }
         for (effect, size) in self.acting(x) {
-            match self.share(set_point, effect) {
+            match effect.share(&self.experiment, set_point) {
                 Share::Tilt(axis) => geometry.tilt[axis] += size,
                 Share::Turn(turn) => geometry.turn += turn * size,
                 Share::Arm(displacement) => geometry.arm_y += displacement * size,
@@ -158,7 +157,7 @@ impl MeasurementModel {
     pub(super) fn disturbance(&self, set_point: &SetPoint, x: &[f64]) -> Vector3<f64> {
         let mut sum = Vector3::zeros();
         for (effect, size) in self.acting(x) {
-            if let Share::Reading(reading) = self.share(set_point, effect) {
+            if let Share::Reading(reading) = effect.share(&self.experiment, set_point) {
                 sum += reading * size;
             }
         }
@@ -189,7 +188,7 @@ impl MeasurementModel {
         let omega = set_point.omega;
         let mut speed = partials.rate * (omega * (2.0 * omega + self.experiment.site.coriolis()));
         for (effect, size) in self.acting(x) {
-            speed += match self.share(set_point, effect) {
+            speed += match effect.share(&self.experiment, set_point) {
                 Share::Turn(turn) if effect.is_elastic() => partials.turn * turn * (2.0 * size),
                 Share::Arm(displacement) if effect.is_elastic() => partials.arm * displacement * (2.0 * size),
                 // The Earth's rotation acts with `Omega`, an error of the speeds with its square.
@@ -213,7 +212,9 @@ impl MeasurementModel {
     fn reading_by_log_speed(&self, set_point: &SetPoint, effect: Effect) -> Vector3<f64> {
         /// Polynomials of low degree in `Omega^2` are differenced to some 1e-8.
         const STEP: f64 = 1e-4;
-        let at = |factor: f64| match self.share(&SetPoint { omega: set_point.omega * factor, ..*set_point }, effect) {
+        let at = |factor: f64| match effect
+            .share(&self.experiment, &SetPoint { omega: set_point.omega * factor, ..*set_point })
+        {
             Share::Reading(reading) => reading,
             _ => Vector3::zeros(),
         };
@@ -224,7 +225,7 @@ impl MeasurementModel {
     fn stated_columns(&self, set_point: &SetPoint, partials: &Partials) -> Vec<(usize, Vector3<f64>)> {
         let influences = (self.parameters.len()..).zip(self.influences());
         let changes = influences.filter_map(|(unknown, influence)| {
-            let change = partials.by_share(&self.share(set_point, influence.effect))?;
+            let change = partials.by_share(&influence.effect.share(&self.experiment, set_point))?;
             Some((unknown, change * influence.standard_uncertainty))
         });
         changes.collect()
@@ -256,7 +257,7 @@ impl MeasurementModel {
             columns.push((column, Vector3::from_fn(|axis, _| if axis == term.axis { *monomial } else { 0.0 })));
         }
         for (column, effect) in parameters.effects() {
-            if let Some(change) = partials.by_share(&self.share(set_point, effect)) {
+            if let Some(change) = partials.by_share(&effect.share(&self.experiment, set_point)) {
                 columns.push((column, change));
             }
         }

@@ -6,12 +6,12 @@
 
 use nalgebra::Vector3;
 
+use super::effect::Share;
 use super::experiment::SetPoint;
 use super::measurement::MeasurementModel;
 use super::nominal::Nominal;
 use super::parameter::Kind;
 use super::plateau::Linearisation;
-use super::share::Share;
 
 impl MeasurementModel {
     /// Three rows of `g H` [K5.3] about the nominal reading `f0_z` [K5.1], with the direction `d f0_z / d ln Omega`
@@ -32,7 +32,8 @@ impl MeasurementModel {
         let stated = stated.map(|(unknown, influence)| {
             (
                 unknown,
-                by_share(&n, &self.share(set_point, influence.effect), set_point) * influence.standard_uncertainty,
+                by_share(&n, &influence.effect.share(&self.experiment, set_point), set_point)
+                    * influence.standard_uncertainty,
             )
         });
         let stated = stated.filter(|(_, derivative)| *derivative != Vector3::zeros()).collect();
@@ -65,7 +66,7 @@ impl MeasurementModel {
             }
             // Of another position; the tilt of the arm's axis where the unit is not on the arm; of an attitude that is not known.
             Kind::Turn { .. } | Kind::Attitude { .. } | Kind::Tilt(_) | Kind::CaseTurn(_) => Vector3::zeros(),
-            Kind::Effect(effect) => by_share(n, &self.share(set_point, effect), set_point),
+            Kind::Effect(effect) => by_share(n, &effect.share(&self.experiment, set_point), set_point),
         }
     }
 }

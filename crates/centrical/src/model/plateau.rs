@@ -8,6 +8,7 @@
 use nalgebra::{Cholesky, Const, DMatrix, DVector, Matrix3, Vector3};
 
 use super::error::FitError;
+use super::prior::{self, Prior};
 
 /// The mean reading of one plateau, as data.
 #[derive(Debug, Clone, PartialEq)]
@@ -16,7 +17,7 @@ pub struct Observation {
     pub set_point: usize,
     /// Mean reading [m/s^2].
     pub mean: Vector3<f64>,
-    /// Covariance of the mean, noise alone [m^2/s^4].
+    /// Covariance of the mean [m^2/s^4]: the noise, and of rests what differs from one to the next.
     pub covariance: Matrix3<f64>,
 }
 
@@ -25,7 +26,7 @@ pub struct Observation {
 pub struct Weight {
     /// Index of the plateau in [`crate::Experiment::set_points`].
     pub set_point: usize,
-    /// Covariance of the mean, noise alone [m^2/s^4].
+    /// As [`Observation::covariance`] [m^2/s^4].
     pub covariance: Matrix3<f64>,
 }
 
@@ -89,6 +90,79 @@ impl Linearisation {
     }
 }
 
+/// Weighted linearised equations `rows du = misfit` of all plateaus, and of the priors and influences if any.
+pub(crate) struct Design {
+    /// `3 n x (p + q)`, whitened: parameters, then influences; then the rows of the priors and the influences.
+    pub rows: DMatrix<f64>,
+    /// `3 n`, whitened readings less whitened model; then the priors and the influences.
+    pub misfit: DVector<f64>,
+    /// Norm of the part that no unknown can follow, once rotated out of the rows; 0 while it is still in them.
+    pub rest: f64,
+    /// Norm of the whitened readings of the model: what rounding is relative to.
+    pub magnitude: f64,
+}
+
+impl Design {
+    /// Stacks the plateaus' linearisations, whitened by their covariances.
+    ///
+    /// # Errors
+    /// [`FitError::Covariance`] when a plateau's covariance is not positive definite.
+    pub fn of(
+        observations: &[Observation],
+        linearisations: &[Linearisation],
+        unknowns: usize,
+    ) -> Result<Self, FitError> {
+        let mut rows = DMatrix::zeros(3 * observations.len(), unknowns);
+        let mut misfit = DVector::zeros(3 * observations.len());
+        let mut magnitude = 0.0;
+        for (n, (observation, linearisation)) in observations.iter().zip(linearisations).enumerate() {
+            let whitener = Whitener::new(observation, linearisation)?;
+            whitener.fill(&mut rows, n, linearisation);
+            misfit.fixed_rows_mut::<3>(3 * n).copy_from(&whitener.apply(&(observation.mean - linearisation.reading)));
+            magnitude += whitener.apply(&linearisation.reading).norm_squared();
+        }
+        Ok(Self { rows, misfit, rest: 0.0, magnitude: magnitude.sqrt() })
+    }
+
+    /// Adds the equations of the priors and of `influences`, the last unknowns, at the point `x` of the linearisation.
+    pub fn with_priors(mut self, priors: &[Prior], influences: usize, x: &[f64]) -> Self {
+        let ((n, unknowns), m) = (self.rows.shape(), priors.len());
+        let parameters = unknowns - influences;
+        self.rows = with_prior_rows(self.rows, priors, influences);
+        self.misfit = self.misfit.resize_vertically(n + m + influences, 0.0);
+        let at = DVector::from_column_slice(&x[..parameters]);
+        self.misfit.rows_mut(n, m).copy_from(&prior::misfit(priors, &at));
+        self.misfit.rows_mut(n + m, influences).copy_from(&-DVector::from_column_slice(&x[parameters..]));
+        self
+    }
+}
+
+/// Three whitened readings of a plateau, linearised about a point of the unknowns: `rows (x - point) = misfit`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Readings {
+    /// Non-zero columns: (index of the unknown, whitened derivative). Influences stand behind the parameters.
+    pub columns: Vec<(usize, Vector3<f64>)>,
+    /// Whitened reading less whitened model.
+    pub misfit: Vector3<f64>,
+    /// Norm of the whitened reading of the model.
+    pub(crate) magnitude: f64,
+}
+
+impl Readings {
+    /// Whitens a plateau by the covariance of its mean and the speed's rank-one term.
+    ///
+    /// # Errors
+    /// [`FitError::Covariance`] when the covariance is not positive definite.
+    pub fn new(observation: &Observation, linearisation: &Linearisation) -> Result<Self, FitError> {
+        let whitener = Whitener::new(observation, linearisation)?;
+        Ok(Self {
+            columns: linearisation.by_unknowns().map(|(column, d)| (column, whitener.apply(d))).collect(),
+            misfit: whitener.apply(&(observation.mean - linearisation.reading)),
+            magnitude: whitener.apply(&linearisation.reading).norm(),
+        })
+    }
+}
+
 /// The whitened rows of plateaus of given weights, `3 n x (p + q)`, for all `unknowns`: parameters, then influences.
 ///
 /// # Errors
@@ -103,6 +177,16 @@ pub(crate) fn whitened_rows(
         Whitener::new(*weight, linearisation)?.fill(&mut rows, n, linearisation);
     }
     Ok(rows)
+}
+
+/// `rows` of plateaus with those of the priors, and of `influences`, the last unknowns.
+pub(crate) fn with_prior_rows(rows: DMatrix<f64>, priors: &[Prior], influences: usize) -> DMatrix<f64> {
+    let ((n, unknowns), m) = (rows.shape(), priors.len());
+    let parameters = unknowns - influences;
+    let mut rows = rows.resize_vertically(n + m + influences, 0.0);
+    rows.view_mut((n, 0), (m, parameters)).copy_from(&prior::rows(priors, parameters));
+    rows.view_mut((n + m, parameters), (influences, influences)).fill_with_identity();
+    rows
 }
 
 /// Takes a plateau's errors to independent ones of unit variance.

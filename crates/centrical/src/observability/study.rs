@@ -2,7 +2,7 @@
 
 use nalgebra::DMatrix;
 
-use crate::model::plateau::whitened_rows;
+use crate::model::plateau::{whitened_rows, with_prior_rows};
 use crate::model::prior;
 use crate::model::{FitError, Linearisation, MeasurementModel, Prior, Weight};
 
@@ -93,10 +93,8 @@ impl Study {
 
 /// What plateaus with the whitened `rows` determine, with `priors`.
 fn observability(model: &MeasurementModel, weights: &[Weight], rows: DMatrix<f64>, priors: &[Prior]) -> Observability {
-    let ((n, unknowns), m, influences) = (rows.shape(), priors.len(), model.influences().len());
-    let mut rows = rows.resize_vertically(n + m + influences, 0.0);
-    rows.rows_mut(n, m).copy_from(&prior::rows(priors, unknowns));
-    rows.view_mut((n + m, unknowns - influences), (influences, influences)).fill_with_identity();
+    let influences = model.influences().len();
+    let rows = with_prior_rows(rows, priors, influences);
     let set_points: Vec<usize> = weights.iter().map(|weight| weight.set_point).collect();
     Observability::of(rows, &model.attitudes_of_single_rests(&set_points, priors), influences)
 }

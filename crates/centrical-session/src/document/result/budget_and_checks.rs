@@ -39,29 +39,6 @@ pub struct BudgetSource {
     pub changes: Option<Vec<Vec<Option<f64>>>>,
 }
 
-/// What the budget says of one parameter, SI; nothing of one that is not estimable.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ParameterBudget {
-    /// Standard uncertainty that each source leaves.
-    pub sources: Vec<Option<f64>>,
-    /// All of them together.
-    pub combined: Option<f64>,
-    /// Effective degrees of freedom (Welch-Satterthwaite); nothing if they are infinite.
-    pub degrees_of_freedom: Option<f64>,
-}
-
-impl BudgetSummary {
-    /// What it says of the parameter at this place.
-    pub(super) fn parameter(&self, place: usize) -> ParameterBudget {
-        let number = |numbers: &[Option<f64>]| numbers.get(place).copied().flatten();
-        ParameterBudget {
-            sources: self.sources.iter().map(|source| number(&source.standard_uncertainty)).collect(),
-            combined: number(&self.combined),
-            degrees_of_freedom: number(&self.degrees_of_freedom),
-        }
-    }
-}
-
 /// Whether the residuals are those of a true model with true weights.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ValiditySummary {

@@ -6,7 +6,6 @@ use centrical::Source;
 use centrical_table::write_whole;
 use nalgebra::DMatrix;
 
-use super::budget_and_checks::ParameterBudget;
 use super::contradiction::contradiction;
 use super::schema::{CalibrationResult, ParameterEstimate, PlateauSummary, SCHEMA};
 use crate::error::{Error, Place};
@@ -78,10 +77,10 @@ impl CalibrationResult {
         self.parameters.iter().find(|p| p.name == name)
     }
 
-    /// What the budget says of the parameter of this name; nothing without a budget, or without such a parameter.
-    pub fn budget_of(&self, name: &str) -> Option<ParameterBudget> {
+    /// Effective degrees of freedom of the parameter of this name (Welch-Satterthwaite); nothing if they are infinite.
+    pub fn degrees_of_freedom(&self, name: &str) -> Option<f64> {
         let place = self.parameters.iter().position(|p| p.name == name)?;
-        Some(self.budget.as_ref()?.parameter(place))
+        self.budget.as_ref()?.degrees_of_freedom.get(place).copied().flatten()
     }
 
     /// Reads a result.

@@ -41,8 +41,8 @@ pub struct CalibrationResult {
     pub axes: Option<AxesSummary>,
     /// The unknowns in the order of the covariance.
     pub parameters: Vec<ParameterEstimate>,
-    /// Covariance of the estimates, SI; null where a parameter is not estimable. The combined one of the budget where the
-    /// session states uncertainties beyond what the fit weighs.
+    /// Covariance of the estimates, SI; null where a parameter is not estimable. That of the fit, which has what the session states as
+    /// uncertain among its unknowns.
     pub covariance: Vec<Vec<Option<f64>>>,
     /// What the experiment sees.
     pub observability: ObservabilitySummary,

@@ -8,10 +8,10 @@
 
 use nalgebra::{DMatrix, DVector, Vector3};
 
-use super::super::data::{Data, Design};
+use super::super::data::Data;
 use super::lifetimes::Lifetimes;
-use super::readings::Readings;
 use crate::linalg::factor::Factor;
+use crate::model::plateau::{Design, Readings};
 use crate::model::{FitError, Linearisation};
 use crate::observability::Observability;
 

@@ -13,8 +13,8 @@
 use nalgebra::{DMatrix, DVector, SVD};
 
 use super::information::Filter;
-use super::readings::Readings;
 use crate::model::FitError;
+use crate::model::plateau::Readings;
 use crate::observability::Observability;
 use crate::statistics::Test;
 
