@@ -37,12 +37,13 @@ const MOST: usize = 1024;
 
 /// Sets the number of threads, before the first call.
 #[pyfunction]
-pub fn set_threads(count: usize) -> PyResult<()> {
-    if !(1..=MOST).contains(&count) {
+pub fn set_threads(count: i64) -> PyResult<()> {
+    let threads = usize::try_from(count).ok().filter(|count| (1..=MOST).contains(count));
+    let Some(threads) = threads else {
         return Err(PyValueError::new_err(format!("count: found {count}, expected 1 to {MOST} threads")));
-    }
+    };
     claim()?;
-    rayon::ThreadPoolBuilder::new().num_threads(count).build_global().map_err(|_| {
+    rayon::ThreadPoolBuilder::new().num_threads(threads).build_global().map_err(|_| {
         PyRuntimeError::new_err("found threads that have started, expected set_threads before the first call")
     })
 }

@@ -399,6 +399,7 @@ def test_arguments_are_checked():
         lambda: ct.schema("session"),
         lambda: ct.watch(SESSION, "x", interval=-1.0),
         lambda: ct.set_threads(0),
+        lambda: ct.set_threads(-1),
         lambda: ct.set_threads(100_000),
     ):
         with pytest.raises(ValueError, match="found .* expected"):

@@ -142,8 +142,7 @@ class Result:
     @property
     def rests_on(self) -> list[Record]:
         """The effects whose absence the result rests on, the worst first; empty where this was not asked."""
-        effects: list[Record] = self.document.content.get("rests_on", [])
-        return effects
+        return list(self.document.content.get("rests_on", []))
 
     @property
     def budget(self) -> Record | None:
