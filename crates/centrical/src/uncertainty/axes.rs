@@ -6,7 +6,7 @@
 //!
 //! A small further turn `w` of the instrument, in axes `b`, makes `c_zb (E + hat(w))` of `c_zb`. With it `dT = dA c_zb + T hat(w)`.
 
-use centrical_compensate::Term;
+use centrical_compensate::{Monomial, Term};
 use nalgebra::{DMatrix, Matrix3, Matrix3xX, Vector3};
 
 use super::compensated::Compensated;
@@ -229,13 +229,11 @@ fn scale_at_zero(terms: &[Term]) -> Matrix3<f64> {
 
 /// The component that a term is linear in.
 fn linear_in(term: &Term) -> Option<usize> {
-    let powers = term.monomial.powers;
-    let is_linear = term.monomial.sign_of.is_none() && powers.iter().sum::<u8>() == 1;
-    is_linear.then(|| powers.iter().position(|power| *power == 1)).flatten()
+    term.monomial.as_power().filter(|(_, power)| *power == 1).map(|(j, _)| j)
 }
 
 fn is_constant(term: &Term) -> bool {
-    term.monomial.sign_of.is_none() && term.monomial.powers == [0; 3]
+    term.monomial == Monomial::ONE
 }
 
 fn is_other(term: &Term) -> bool {

@@ -42,7 +42,7 @@ impl CalibrationResult {
         }
         let degree = |name: &str| {
             let term = self.model.error_model.iter().find(|term| term.name == name)?;
-            Some(i32::from(term.powers.iter().sum::<u8>()))
+            Some(i32::from(term.monomial().ok()?.degree()))
         };
         let change = |(name, component): (&String, &serde_json::Value)| {
             Some((component.as_f64()? * self.model.gravity.powi(degree(name)?)).abs())

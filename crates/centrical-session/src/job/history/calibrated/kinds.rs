@@ -4,6 +4,7 @@ use std::collections::HashSet;
 use std::sync::Arc;
 
 use centrical::Group;
+use centrical_compensate::Monomial;
 
 use crate::store::{Row, TermSummary};
 
@@ -36,10 +37,9 @@ pub enum Role {
 /// Newtonometer and role of a term.
 fn coefficient(term: &TermSummary) -> Option<(usize, Role)> {
     let axis = term.axis.checked_sub(1).filter(|axis| *axis < 3)?;
-    let own = [0, 1, 2].map(|of| u8::from(of == axis));
-    let role = match (term.powers, term.sign_of) {
-        ([0, 0, 0], None) => Role::Bias,
-        (powers, None) if powers == own => Role::Scale,
+    let role = match term.monomial() {
+        Ok(Monomial::ONE) => Role::Bias,
+        Ok(monomial) if monomial == Monomial::power(axis, 1) => Role::Scale,
         _ => Role::Other,
     };
     Some((axis, role))
