@@ -173,8 +173,12 @@ impl Rivals<'_> {
         if doubtful.is_empty() {
             return Ok(false);
         }
-        let weights = data.observations().iter().map(Weight::from).collect();
-        let study = Study::at_zero(data.model().with_rivals(&[suspect.rival]), weights)?;
+        let richer = data.model().with_rivals(&[suspect.rival]);
+        // A plateau run again adds weight, which changes no rank.
+        let (alike, mut kinds) = (richer.alike(), BTreeSet::new());
+        let first = data.observations().iter().filter(|observation| kinds.insert(alike[observation.set_point]));
+        let weights = first.map(Weight::from).collect();
+        let study = Study::at_zero(richer, weights)?;
         let is_lost = |j: usize| {
             let there = study.model().parameters().find(&parameters[j].name);
             there.is_none_or(|j| !study.observability().is_estimable(j))
