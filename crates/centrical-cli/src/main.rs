@@ -13,10 +13,14 @@ mod progress;
 mod serving;
 
 use std::io::{self, Write};
+use std::num::NonZero;
 use std::process::ExitCode;
+use std::sync::Mutex;
+use std::thread;
 
 use centrical_session::Error;
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
+use rayon::ThreadPoolBuilder;
 
 use output::{Outcome, say, written};
 
@@ -60,6 +64,7 @@ enum Command {
 
 fn main() -> ExitCode {
     interruption::prepare();
+    make_do_with_few_threads();
     let matches = help::grouped(Arguments::command()).try_get_matches();
     let outcome = match matches.and_then(|matches| Arguments::from_arg_matches(&matches)) {
         Ok(arguments) => run(arguments.command),
@@ -77,6 +82,24 @@ fn main() -> ExitCode {
             say(&format!("centrical: {error}\n"));
             ExitCode::from(2)
         }
+    }
+}
+
+/// Makes do with as many threads as the system gives, where it gives fewer than there are processors: a container may limit them.
+fn make_do_with_few_threads() {
+    let processors = thread::available_parallelism().map_or(1, NonZero::get);
+    let gate = Mutex::new(());
+    let given = thread::scope(|scope| {
+        // Each waits for the others.
+        let _closed = gate.lock();
+        let is_given = |_: &usize| thread::Builder::new().spawn_scoped(scope, || drop(gate.lock())).is_ok();
+        (0..processors).take_while(is_given).count()
+    });
+    if given < processors {
+        let builder = ThreadPoolBuilder::new().num_threads(given.max(1));
+        let builder = if given == 0 { builder.use_current_thread() } else { builder };
+        // An error is that of whoever needs the threads.
+        let _ = builder.build_global();
     }
 }
 

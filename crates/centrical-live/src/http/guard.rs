@@ -60,7 +60,7 @@ pub struct Guard {
 impl Guard {
     /// For a server at `address` that may be called by `names` too.
     pub fn new(address: SocketAddr, names: &[String]) -> Self {
-        Self { address, names: names.iter().map(|name| name.to_ascii_lowercase()).collect() }
+        Self { address, names: names.iter().map(|name| without_port(name).to_ascii_lowercase()).collect() }
     }
 
     /// The address.
@@ -97,18 +97,20 @@ impl Guard {
         }
     }
 
-    /// Whether a host is this server: any address, as an address cannot be made to resolve elsewhere; of names the known ones.
+    /// Whether a host is this server: any address, as an address cannot be made to resolve elsewhere; of names the known ones. The port is that
+    /// of whoever passes requests on, such as a tunnel or a proxy.
     fn is_own(&self, host: &str) -> bool {
-        let (name, port) = match host.rsplit_once(':') {
-            Some((name, port)) if !port.is_empty() && port.bytes().all(|byte| byte.is_ascii_digit()) => (name, port),
-            _ => (host, "80"),
-        };
-        if port.parse() != Ok(self.address.port()) {
-            return false;
-        }
-        let name = name.to_ascii_lowercase();
+        let name = without_port(host).to_ascii_lowercase();
         let bare = name.strip_prefix('[').and_then(|name| name.strip_suffix(']')).unwrap_or(&name);
         bare.parse::<IpAddr>().is_ok() || name == "localhost" || self.names.contains(&name)
+    }
+}
+
+/// A host without its port.
+fn without_port(host: &str) -> &str {
+    match host.rsplit_once(':') {
+        Some((name, port)) if !port.is_empty() && port.bytes().all(|byte| byte.is_ascii_digit()) => name,
+        _ => host,
     }
 }
 
@@ -126,20 +128,20 @@ mod tests {
     }
 
     #[test]
-    fn hosts_are_addresses_and_known_names_with_the_port() {
-        for own in ["127.0.0.1:8080", "localhost:8080", "LOCALHOST:8080", "[::1]:8080", "192.0.2.7:8080", "lab-pc:8080"]
-        {
+    fn hosts_are_addresses_and_known_names_at_any_port() {
+        for own in [
+            "127.0.0.1:8080",
+            "localhost:8080",
+            "LOCALHOST:9000",
+            "localhost",
+            "[::1]:8080",
+            "192.0.2.7:8080",
+            "lab-pc:443",
+            "lab-pc",
+        ] {
             assert_eq!(checked(own, &[]), Ok(()), "{own}");
         }
-        for foreign in [
-            "evil.example:8080",
-            "localhost:8081",
-            "localhost",
-            "127.0.0.1.evil.example:8080",
-            "",
-            ":8080",
-            "[::1:8080",
-        ] {
+        for foreign in ["evil.example:8080", "127.0.0.1.evil.example:8080", "", ":8080", "[::1:8080"] {
             assert_eq!(checked(foreign, &[]), Err(Refusal::Host), "{foreign}");
         }
     }

@@ -57,7 +57,11 @@ pub fn refused(refusal: Refusal) -> Response<Body> {
     if refusal == Refusal::Method {
         builder = builder.header(ALLOW, "GET, HEAD");
     }
-    whole(builder, "text/plain; charset=utf-8", format!("refused: {}\n", refusal.label()), false)
+    let remedy = match refusal {
+        Refusal::Host => ", expected an address, localhost or a name of --serve-name",
+        Refusal::Method | Refusal::CrossSite | Refusal::Target | Refusal::Crowded => "",
+    };
+    whole(builder, "text/plain; charset=utf-8", format!("refused: {}{remedy}\n", refusal.label()), false)
 }
 
 /// The events of a panel, the newest first.

@@ -36,12 +36,13 @@ pub fn watch(
 ) -> Result<WatchEnd, Error> {
     let _claim = claim_folder(&request.out)?;
     refuse_inputs(&OUTPUTS.map(|name| request.out.join(name)), &session.files())?;
+    let mut rests_quiet = quiet::Quiet::new(request.quiet, request.once);
     loop {
-        let session = rests::with_rests_there(session, request.quiet, &|_| arrivals::until(stop))?;
+        let session = rests::with_rests_there(session, &mut rests_quiet, &|_| arrivals::until(stop))?;
         let model = session.model()?;
         let mut following = following::Following::resume(request, &session, &model)?;
         report(WatchEvent::Begun(&model));
-        let end = following.run(stop, report).inspect_err(|error| {
+        let end = following.run(stop, &mut rests_quiet, report).inspect_err(|error| {
             if !matches!(error, Error::Stopped(_)) {
                 report(WatchEvent::Failed(error));
             }

@@ -71,7 +71,7 @@ impl TextTable {
     /// Begins the file.
     pub fn new(mut file: SteadyFile, names: &[&str], decimals: &[Decimals]) -> io::Result<Self> {
         file.write_all(header(names).as_bytes())?;
-        Ok(Self { output: Output::new(TextFile(file), AHEAD), decimals: decimals.to_vec() })
+        Ok(Self { output: Output::new(TextFile(file), AHEAD)?, decimals: decimals.to_vec() })
     }
 
     /// Adds rows, piece after piece, on all threads; in order, whatever their number.

@@ -36,8 +36,14 @@ pub(super) struct Beside {
 impl Beside {
     /// Creates the temporary file, to be written.
     pub fn create(file: &Path) -> io::Result<(Self, File)> {
-        if fs::metadata(file).is_ok_and(|metadata| !metadata.is_file()) {
+        let before = fs::metadata(file).ok();
+        if before.as_ref().is_some_and(|metadata| !metadata.is_file()) || is_of_system(file) {
             return Err(io::Error::other("found something that is no regular file, expected a file or a free name"));
+        }
+        if before.as_ref().is_some_and(|metadata| metadata.permissions().readonly()) {
+            return Err(io::Error::other(
+                "found a file that is protected from writing, expected one that may be replaced",
+            ));
         }
         let name = file.file_name().ok_or_else(|| io::Error::other("found no name of a file, expected one"))?;
         let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
@@ -48,6 +54,10 @@ impl Beside {
         builder.prefix(&prefix).suffix(".tmp").rand_bytes(10);
         readable_as_any_file(&mut builder);
         let (output, temporary) = builder.tempfile_in(folder)?.into_parts();
+        if let Some(before) = before {
+            // What the user keeps from others stays so. Some file systems know no rights: nothing is lost there.
+            let _ = fs::set_permissions(&temporary, before.permissions());
+        }
         begun.files.insert(temporary.to_path_buf());
         Ok((Self { file: file.to_owned(), temporary: Some(temporary) }, output))
     }
@@ -125,6 +135,14 @@ fn begun() -> MutexGuard<'static, Begun> {
     BEGUN.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
+/// Whether a name is a link of the system to an open file, such as `/dev/stdout`: even where that is a regular file, what took the place of the
+/// link would be in the way of every other program.
+fn is_of_system(file: &Path) -> bool {
+    let is_link = fs::symlink_metadata(file).is_ok_and(|metadata| metadata.is_symlink());
+    let folder = file.parent().and_then(|folder| folder.canonicalize().ok());
+    is_link && folder.is_some_and(|folder| folder == Path::new("/dev") || folder.starts_with("/proc"))
+}
+
 /// The beginning of the name of a temporary file.
 fn prefix(name: &str) -> OsString {
     let end = (0..=REPEATED.min(name.len())).rev().find(|end| name.is_char_boundary(*end)).unwrap_or(0);
@@ -141,3 +159,42 @@ fn readable_as_any_file(builder: &mut Builder) {
 /// Other systems give a new file the rights of its folder.
 #[cfg(not(unix))]
 fn readable_as_any_file(_: &mut Builder) {}
+
+#[cfg(all(test, target_os = "linux"))]
+mod tests {
+    use std::os::fd::AsRawFd;
+    use std::os::unix::fs::PermissionsExt;
+
+    use super::*;
+
+    fn mode(file: &Path) -> u32 {
+        fs::metadata(file).unwrap().permissions().mode() & 0o777
+    }
+
+    #[test]
+    fn a_link_of_the_system_to_an_open_file_stays() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("caught.txt");
+        let open = File::create(&file).unwrap();
+        let link = format!("/proc/self/fd/{}", open.as_raw_fd());
+        let message = write_whole(Path::new(&link), b"out").unwrap_err().to_string();
+        assert!(message.contains("no regular file"), "{message}");
+        assert_eq!(fs::read(&file).unwrap(), b"");
+    }
+
+    #[test]
+    fn a_file_keeps_its_rights_and_a_protected_one_its_bytes() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("result.json");
+        write_whole(&file, b"old").unwrap();
+        for rights in [0o600, 0o664] {
+            fs::set_permissions(&file, fs::Permissions::from_mode(rights)).unwrap();
+            write_whole(&file, b"new").unwrap();
+            assert_eq!(mode(&file), rights);
+        }
+        fs::set_permissions(&file, fs::Permissions::from_mode(0o444)).unwrap();
+        let message = write_whole(&file, b"newer").unwrap_err().to_string();
+        assert!(message.contains("protected from writing"), "{message}");
+        assert_eq!(fs::read(&file).unwrap(), b"new");
+    }
+}

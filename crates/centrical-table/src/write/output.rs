@@ -34,11 +34,14 @@ enum Message<P> {
 
 impl<P: Default + Send + 'static> Output<P> {
     /// Begins; `ahead` pieces may wait to be written, enough for either side to ride out a hiccup of the other.
-    pub fn new(sink: impl Sink<P>, ahead: usize) -> Self {
+    ///
+    /// # Errors
+    /// If the system gives no thread for it.
+    pub fn new(sink: impl Sink<P>, ahead: usize) -> io::Result<Self> {
         let (pieces, received) = sync_channel(ahead);
         let (done, written) = channel();
-        let thread = thread::spawn(move || write_behind(sink, &received, &done));
-        Self { pieces: Some(pieces), written, thread: Some(thread) }
+        let thread = thread::Builder::new().spawn(move || write_behind(sink, &received, &done))?;
+        Ok(Self { pieces: Some(pieces), written, thread: Some(thread) })
     }
 
     /// Room for a piece; what is in it may be anything.
@@ -116,7 +119,7 @@ impl SteadyFile {
     pub fn new(file: File) -> io::Result<Self> {
         let same = file.try_clone()?;
         let (ask, asked) = sync_channel(1);
-        let asking = thread::spawn(move || asked.iter().try_for_each(|()| same.sync_data()));
+        let asking = thread::Builder::new().spawn(move || asked.iter().try_for_each(|()| same.sync_data()))?;
         Ok(Self { file, since: 0, ask, asking })
     }
 

@@ -90,7 +90,7 @@ impl RowGroups {
         self.stage = match std::mem::replace(&mut self.stage, Stage::Failed) {
             Stage::Unwritten { file, names } => {
                 let table = ParquetTable::new(file, Layout::PLAIN, &names, of_first)?;
-                Stage::Writing { output: Output::new(table, AHEAD), stamps: of_first }
+                Stage::Writing { output: Output::new(table, AHEAD)?, stamps: of_first }
             }
             begun => begun,
         };

@@ -11,6 +11,8 @@
 
 use std::ops::Range;
 
+use statrs::function::beta::beta_reg;
+
 use super::robust::whole;
 
 /// Probability below which a count is not chance.
@@ -109,25 +111,31 @@ pub(crate) fn widened(side: Side) -> Option<f64> {
 
 /// The value at which readings pile up, and their number; `None` if they do not.
 ///
-/// The numbers of readings at the outermost values of a noisy reading fall off: log-concavity, which the normal law keeps
-/// when it is rounded, makes the outermost number no more than `n_1^2 / n_2` of the next two on average. A number that
-/// Poisson's law exceeds less than once in a million times about that average is a pile. Noise below a digit allows no
-/// decision: the crest of a slow wave piles up as well.
+/// The numbers of readings at the outermost values of a noisy reading fall off. By log-concavity, which the normal law keeps when it is
+/// rounded, their ratio falls from each value to the next: where the outermost has `n_0` on average and all others `n`, the next has
+/// `n_0 n / (n_0 + n)` at least. Of these two, as few at the next as there are come by chance with a binomial probability; below one
+/// in a million the outermost is a pile. Noise below a digit allows no decision: the crest of a slow wave piles up as well.
 pub(crate) fn piled_up(mut readings: Vec<f64>) -> Option<(f64, usize)> {
     readings.sort_by(f64::total_cmp);
     let counts: Vec<(f64, usize)> = readings.chunk_by(f64::eq).map(|same| (same[0], same.len())).collect();
-    let at_end = |[outer, next, inner]: [(f64, usize); 3]| {
-        let usual = (next.1 as f64 + 1.0).powi(2) / inner.1 as f64;
-        (poisson_tail(outer.1, usual) < CHANCE).then_some(outer)
+    let at_end = |outer: (f64, usize), next: (f64, usize)| {
+        let others = (readings.len() - outer.1) as f64;
+        let ratio = others / (others + outer.1 as f64);
+        (at_most(next.1, outer.1 + next.1, ratio / (1.0 + ratio)) < CHANCE).then_some(outer)
     };
-    let bottom = counts.first_chunk().copied().and_then(at_end);
-    let top = counts.last_chunk().copied().and_then(|[inner, next, outer]| at_end([outer, next, inner]));
+    let bottom = counts.first_chunk().and_then(|[outer, next, _]| at_end(*outer, *next));
+    let top = counts.last_chunk().and_then(|[_, next, outer]| at_end(*outer, *next));
     top.into_iter().chain(bottom).max_by_key(|end| end.1)
 }
 
 /// Whether this number of readings at the end of their range calls for a closer look: nearly always it is one or two.
 pub(crate) fn may_be_piled_up(most: usize) -> bool {
     poisson_tail(most, 1.0) < CHANCE
+}
+
+/// Probability of no more than `k` of `n`, each with the probability `p`.
+fn at_most(k: usize, n: usize, p: f64) -> f64 {
+    beta_reg((n - k) as f64, k as f64 + 1.0, 1.0 - p)
 }
 
 /// Probability of `count` or more under Poisson's law of that mean, from above (Chernoff): `(e m / k)^k exp(-m)`.
@@ -203,6 +211,20 @@ mod tests {
                 });
                 let kept = wider(&spiky.collect::<Vec<f64>>()) * cut(n);
                 assert!(kept < 10.0, "{share} of {size}: {kept}");
+            }
+        }
+    }
+
+    /// A short plateau in counts, with the wave of gravity: none looks piled up.
+    #[test]
+    fn coarse_readings_of_short_plateaus_do_not_pile_up() {
+        let mut random = Random::stream(2, 0);
+        for noise in [1.0, 1.4, 2.0, 3.0] {
+            for wave in [0.0, 1.0, 5.0, 50.0] {
+                for _ in 0..3000 {
+                    let reading = |i: i32| (wave * (0.37 * f64::from(i)).sin() + noise * random.normal()).round();
+                    assert_eq!(piled_up((0..136).map(reading).collect()), None, "{noise} {wave}");
+                }
             }
         }
     }

@@ -2,7 +2,10 @@
 // The panel comes from the server, which escapes what files say. What has not changed stays, with its focus and what is open.
 const panel = document.getElementById("live");
 const connection = document.getElementById("connection");
+// The server sends every five seconds at least: after this time [s] it is lost, though the connection may still seem open.
+const LONGEST_SILENCE = 12;
 let received = performance.now();
+let events, connected;
 
 // Elements as they came: the script itself writes ages and times into them.
 const sources = new WeakMap();
@@ -38,7 +41,10 @@ function remember(element) {
 }
 
 function tick() {
-  const passed = (performance.now() - received) / 1000;
+  const now = performance.now(), passed = (now - received) / 1000;
+  const isSilent = passed > LONGEST_SILENCE;
+  connection.hidden = events.readyState === EventSource.OPEN && !isSilent;
+  if (isSilent && (now - connected) / 1000 > LONGEST_SILENCE) connect();
   for (const age of panel.querySelectorAll("[data-age]")) {
     age.textContent = String(Math.round(Number(age.dataset.age) + passed));
   }
@@ -48,10 +54,13 @@ function tick() {
   }
 }
 
+function connect() {
+  events?.close();
+  events = new EventSource("/events" + location.search);
+  events.onmessage = event => take(event.data);
+  connected = performance.now();
+}
+
 Array.from(panel.children).forEach(remember);
-const events = new EventSource("/events" + location.search);
-events.onmessage = event => take(event.data);
-events.onopen = () => { connection.hidden = true; };
-events.onerror = () => { connection.hidden = false; };
+connect();
 setInterval(tick, 500);
-tick();

@@ -1,7 +1,6 @@
 //! Which plateaus of a session folder have arrived while it is being filled.
 
 use std::collections::BTreeMap;
-use std::fs;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -15,7 +14,7 @@ use centrical_table::Extent;
 
 use super::changed::reads_otherwise;
 use super::growth::Growth;
-use super::quiet::Quiet;
+use super::quiet::{Quiet, Sight};
 use super::rests;
 use crate::error::Error;
 use crate::experiment::{Session, SpeedSource};
@@ -46,6 +45,8 @@ pub struct Watch<'s> {
     seen: Option<Look>,
     /// The record of that mounting, or of the one before until it comes.
     growth: Option<Growth>,
+    /// The telemetry, or the pulses, that has not come or is not whole yet.
+    awaited_speeds: Option<PathBuf>,
     note: Option<Note>,
 }
 
@@ -62,7 +63,7 @@ enum Note {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Look {
     bytes: u64,
-    changed: Option<SystemTime>,
+    written: Option<SystemTime>,
     /// Unchanged for the time called quiet: what it is now it stays.
     left_alone: bool,
     /// A later mounting has a record: this one grows no more, but what was written may still be on its way.
@@ -72,7 +73,7 @@ struct Look {
 impl Look {
     /// Whether the record was not written to between two looks.
     fn is_as(&self, other: &Self) -> bool {
-        (self.bytes, self.changed) == (other.bytes, other.changed)
+        (self.bytes, self.written) == (other.bytes, other.written)
     }
 }
 
@@ -90,13 +91,14 @@ impl<'s> Watch<'s> {
             come: 0,
             seen: None,
             growth: None,
+            awaited_speeds: None,
             note: None,
         }
     }
 
-    /// Whether all plateaus of the schedule have come, and all rests in attitudes of their own.
+    /// Whether all plateaus of the schedule have come, with the telemetry, and all rests in attitudes of their own.
     pub fn is_complete(&self) -> bool {
-        self.has_arm() && rests::awaited(self.session).is_none()
+        self.has_arm() && self.awaited_speeds.is_none() && rests::awaited(self.session).is_none()
     }
 
     /// Whether all plateaus on the arm have come.
@@ -151,12 +153,10 @@ impl<'s> Watch<'s> {
         &self.speeds
     }
 
-    /// Plateaus that have come since the last look: rests in attitudes of their own that the session has, with the first look, and
-    /// those on the arm in the order of the schedule, each with the noise of its own and the
-    /// earlier mountings as far as it was known. Plateaus of a record that was replaced come again if they read otherwise.
-    ///
-    /// A record that cannot be made out and has not been left alone yet is waited for, with a [`Watch::note`]. Where `stop` is raised, the
-    /// record that is read and those after it wait for another look.
+    /// Plateaus that have come since the last look: rests in attitudes of their own, with the first look, and those on the arm in the order of
+    /// the schedule, each with the noise of its own and the earlier mountings. Those of a record that was replaced come again if they read
+    /// otherwise. A record that cannot be made out and has not been left alone yet is waited for, with a [`Watch::note`]. Where `stop` is
+    /// raised, the record that is read and those after it wait for another look.
     ///
     /// # Errors
     /// [`Error`] when a record that has been left alone is wrong.
@@ -171,8 +171,11 @@ impl<'s> Watch<'s> {
             self.look_at_finished(stop, &mut arrivals)?;
             let is_wanted = |finished: usize| finished < self.session.mountings.len() && !stop.load(Ordering::Relaxed);
             while is_wanted(self.finished.len()) && self.look_at_current(stop, &mut arrivals)? {}
+            let telemetry = self.session.mountings.iter().flat_map(|m| m.telemetry.iter().chain(&m.pulses));
+            self.awaited_speeds = self.quiet.awaited(telemetry);
         }
-        if let Some(file) = rests::awaited(self.session).filter(|_| self.has_arm()) {
+        let awaited = self.awaited_speeds.as_ref().or_else(|| rests::awaited(self.session));
+        if let Some(file) = awaited.filter(|_| self.has_arm()) {
             self.note = Some(Note::WaitingFor(file.to_owned()));
         }
         let arrived = &mut self.arrived;
@@ -185,7 +188,7 @@ impl<'s> Watch<'s> {
     fn look_at_finished(&mut self, stop: &AtomicBool, arrivals: &mut Vec<Observation>) -> Result<(), Error> {
         for mounting in 0..self.finished.len() {
             // While it is replaced it may be gone for a moment.
-            let Some(look) = self.look_of(mounting) else { continue };
+            let Some((look, _)) = self.look_of(mounting) else { continue };
             let [taken, last] = self.taken[mounting];
             if look.is_as(&taken) {
                 continue;
@@ -217,13 +220,13 @@ impl<'s> Watch<'s> {
             // The error of a session that names no record.
             return self.session.record(mounting).map(|_| false);
         };
-        let Some(look) = self.look_of(mounting) else {
+        let Some((look, sight)) = self.look_of(mounting) else {
             self.note = Some(Note::WaitingFor(file.to_owned()));
             return Ok(false);
         };
         match &mut self.growth {
-            Some(growth) if growth.mounting == mounting => growth.look_again(look.bytes, look.changed),
-            growth => *growth = Some(Growth::new(mounting, file, look.bytes, look.changed)),
+            Some(growth) if growth.mounting == mounting => growth.look_again(sight),
+            growth => *growth = Some(Growth::new(mounting, file, sight)),
         }
         if self.seen == Some(look) {
             return Ok(false);
@@ -236,6 +239,7 @@ impl<'s> Watch<'s> {
         self.note = None;
         let finished = look.left_alone || look.followed;
         let reduced = self.read(mounting, look, stop).and_then(|record| {
+            self.quiet.failing = None;
             if let Some(growth) = &mut self.growth {
                 growth.show(&record);
             }
@@ -244,6 +248,9 @@ impl<'s> Watch<'s> {
         match reduced {
             Err(Error::Stopped(_)) => self.seen = None,
             Err(error) if !look.left_alone => self.note = Some(Note::NotYet(error.to_string())),
+            Err(error) if self.quiet.may_pass(&error) => {
+                (self.seen, self.note) = (None, Some(Note::NotYet(error.to_string())));
+            }
             Err(error) => return Err(error),
             Ok(None) => {}
             Ok(Some((reduced, complete))) => {
@@ -273,17 +280,12 @@ impl<'s> Watch<'s> {
     }
 
     /// `None` while there is no record.
-    fn look_of(&mut self, mounting: usize) -> Option<Look> {
-        let (mut bytes, mut changed) = (0, None);
-        // Where every newtonometer has a file, the last one to change counts.
-        for file in &self.session.mountings[mounting].records {
-            let metadata = fs::metadata(file).ok()?;
-            bytes += metadata.len();
-            changed = changed.max(metadata.modified().ok());
-        }
-        let left_alone = self.quiet.is_left_alone(mounting, bytes, changed);
+    fn look_of(&mut self, mounting: usize) -> Option<(Look, Sight)> {
+        let sight = self.quiet.look(&self.session.mountings[mounting].records)?;
         let mut later = self.session.mountings[mounting + 1..].iter().filter_map(|m| m.records.first());
-        Some(Look { bytes, changed, left_alone, followed: later.any(|file| file.exists()) })
+        let followed = later.any(|file| file.exists());
+        let Sight { bytes, written, left_alone, .. } = sight;
+        Some((Look { bytes, written, left_alone, followed }, sight))
     }
 
     /// The record of a mounting. Unless it has been left alone a last line without end is not read: it may have come in part.

@@ -14,6 +14,7 @@ use nalgebra::Vector3;
 use super::arrivals::{Watch, until};
 use super::board::{Board, WatchProgress};
 use super::changed::Changed;
+use super::quiet::Quiet;
 use super::request::{WatchEnd, WatchEvent, WatchRequest};
 use super::rests;
 use crate::document::{LiveStatus, WatchState, WatchedPlateau, append_history, keep_history, largest_force};
@@ -105,9 +106,14 @@ impl<'a> Following<'a> {
     ///
     /// # Errors
     /// [`Error`] when a finished record is wrong, or the folder does not take the state.
-    pub fn run(&mut self, stop: &AtomicBool, report: &mut dyn FnMut(WatchEvent)) -> Result<Option<WatchEnd>, Error> {
+    pub fn run(
+        &mut self,
+        stop: &AtomicBool,
+        rests_quiet: &mut Quiet,
+        report: &mut dyn FnMut(WatchEvent),
+    ) -> Result<Option<WatchEnd>, Error> {
         let mut board = self.board.take();
-        let end = self.follow(stop, report, board.as_mut());
+        let end = self.follow(stop, rests_quiet, report, board.as_mut());
         if let Some(board) = &mut board {
             match &end {
                 // The next watch writes it anew.
@@ -127,6 +133,7 @@ impl<'a> Following<'a> {
     fn follow(
         &mut self,
         stop: &AtomicBool,
+        rests_quiet: &mut Quiet,
         report: &mut dyn FnMut(WatchEvent),
         mut board: Option<&mut Board>,
     ) -> Result<Option<WatchEnd>, Error> {
@@ -183,7 +190,7 @@ impl<'a> Following<'a> {
                 watch.without_quiet(stop).iter().for_each(|note| report(WatchEvent::Waiting(note)));
                 return Ok(Some(self.stopped()));
             }
-            if rests::have_come(self.session, self.request.quiet) {
+            if rests::have_come(self.session, rests_quiet) {
                 self.keep()?;
                 return Ok(None);
             }

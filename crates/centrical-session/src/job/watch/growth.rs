@@ -1,10 +1,11 @@
 //! A record as it stands while it grows: its size, its last minutes, and whether it has stopped.
 
 use std::path::{Path, PathBuf};
-use std::time::{Duration, SystemTime};
+use std::time::Duration;
 
 use centrical::reduction::{Record, ReducedMounting};
 
+use super::quiet::Sight;
 use crate::document::{LiveRecord, seconds_since_1970};
 
 /// Stretch at the end that is shown [s].
@@ -19,8 +20,7 @@ pub struct Growth {
     /// Mounting, from 0.
     pub mounting: usize,
     file: PathBuf,
-    bytes: u64,
-    changed: Option<SystemTime>,
+    sight: Sight,
     /// Every plateau of the mounting has begun: it may stop. So does a file at once that appears whole.
     shows_all: bool,
     samples: usize,
@@ -31,12 +31,11 @@ pub struct Growth {
 
 impl Growth {
     /// A record that is seen for the first time.
-    pub fn new(mounting: usize, file: &Path, bytes: u64, changed: Option<SystemTime>) -> Self {
+    pub(super) fn new(mounting: usize, file: &Path, sight: Sight) -> Self {
         Self {
             mounting,
             file: file.to_owned(),
-            bytes,
-            changed,
+            sight,
             shows_all: false,
             samples: 0,
             t: Vec::new(),
@@ -46,8 +45,8 @@ impl Growth {
     }
 
     /// Notes what it looks like from outside.
-    pub fn look_again(&mut self, bytes: u64, changed: Option<SystemTime>) {
-        (self.bytes, self.changed) = (bytes, changed);
+    pub(super) fn look_again(&mut self, sight: Sight) {
+        self.sight = sight;
     }
 
     /// Notes its samples: the means of short stretches of the last minutes.
@@ -79,16 +78,15 @@ impl Growth {
 
     /// Time since it changed, if it has stopped for `after` in the midst of its schedule.
     pub fn frozen(&self, after: Duration) -> Option<Duration> {
-        let age = self.changed?.elapsed().ok()?;
-        (!self.shows_all && age >= after).then_some(age)
+        (!self.shows_all && self.sight.stood >= after).then_some(self.sight.stood)
     }
 
     /// As whoever looks at the watch sees it.
     pub fn live(&self, frozen_after: Duration) -> LiveRecord {
         LiveRecord {
             file: self.file.display().to_string(),
-            bytes: self.bytes,
-            changed: self.changed.map(seconds_since_1970),
+            bytes: self.sight.bytes,
+            changed: self.sight.changed.map(seconds_since_1970),
             frozen: self.frozen(frozen_after).is_some(),
             samples: self.samples,
             t: self.t.clone(),

@@ -1,49 +1,102 @@
-//! How long records have been left alone. The clock of the machine that writes them may be off: what a watch sees itself decides.
+//! How long files have been left alone. The clock of the machine that writes them may be off: what a watch sees itself decides.
 
 use std::collections::BTreeMap;
+use std::fs;
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant, SystemTime};
 
-/// What a watch has seen of the records of mountings.
+use centrical_table::Error as TableError;
+
+use crate::error::Error;
+
+/// Time for which a file has to stand under the eyes of a watch before its own time counts: recorders write more often.
+const STANDING: Duration = Duration::from_secs(10);
+
+/// What a watch has seen of files.
 #[derive(Debug, Clone)]
 pub(super) struct Quiet {
-    /// Time after which a record counts as left alone.
+    /// Time after which a file counts as left alone.
     pub after: Duration,
     /// Whether the watch looks once: the times of the files are then all that it has.
     pub looks_once: bool,
-    seen: BTreeMap<usize, Seen>,
+    /// Since when the system fails to read a record.
+    pub failing: Option<Instant>,
+    seen: BTreeMap<PathBuf, Seen>,
 }
 
-/// How a record looked.
+/// How files looked.
 #[derive(Debug, Clone, Copy)]
 struct Seen {
     bytes: u64,
-    changed: Option<SystemTime>,
-    /// Since when it has looked so.
+    written: Option<SystemTime>,
+    /// Since when they have looked so.
     since: Instant,
-    /// Whether it has looked so before.
-    is_again: bool,
-    /// Whether it has looked otherwise.
+    /// Whether they have looked otherwise.
     is_altered: bool,
+}
+
+/// What a look at files shows.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Sight {
+    pub bytes: u64,
+    /// Their own time.
+    pub written: Option<SystemTime>,
+    /// For how long they have not changed.
+    pub stood: Duration,
+    /// When they changed last, by the clock of the watch.
+    pub changed: Option<SystemTime>,
+    /// Whether they have been left alone for the time called quiet.
+    pub left_alone: bool,
 }
 
 impl Quiet {
     /// Before the first look.
     pub fn new(after: Duration, looks_once: bool) -> Self {
-        Self { after, looks_once, seen: BTreeMap::new() }
+        Self { after, looks_once, failing: None, seen: BTreeMap::new() }
     }
 
-    /// Notes that the record of a mounting looks so; whether it has been left alone. The time of the file counts only where the watch has seen
-    /// it twice, and always alike.
-    pub fn is_left_alone(&mut self, mounting: usize, bytes: u64, changed: Option<SystemTime>) -> bool {
-        let new = |is_altered| Seen { bytes, changed, since: Instant::now(), is_again: false, is_altered };
-        let now = match self.seen.get(&mounting) {
-            Some(seen) if (seen.bytes, seen.changed) == (bytes, changed) => Seen { is_again: true, ..*seen },
-            before => new(before.is_some()),
+    /// Looks at files that belong together, the last one to change counts; `None` unless all are there. Their own time counts as long as
+    /// the watch has not seen them change.
+    pub fn look<'f>(&mut self, files: impl IntoIterator<Item = &'f PathBuf>) -> Option<Sight> {
+        let (mut first, mut bytes, mut written) = (None, 0, None);
+        for file in files {
+            let metadata = fs::metadata(file).ok()?;
+            first = first.or(Some(file.as_path()));
+            bytes += metadata.len();
+            written = written.max(metadata.modified().ok());
+        }
+        Some(self.see(first?, bytes, written))
+    }
+
+    /// The last of files that is not there or has not been left alone; each of them is looked at.
+    pub fn awaited<'f>(&mut self, files: impl Iterator<Item = &'f PathBuf>) -> Option<PathBuf> {
+        files.filter(|file| !self.look([*file]).is_some_and(|sight| sight.left_alone)).last().cloned()
+    }
+
+    /// Whether the system fails to read a file, as a file server does for a moment, and has not done so for the time called quiet.
+    pub fn may_pass(&mut self, error: &Error) -> bool {
+        let Error::Table(TableError::Io { source, .. }) = error else { return false };
+        let since = *self.failing.get_or_insert_with(Instant::now);
+        !self.looks_once && source.kind() != ErrorKind::PermissionDenied && since.elapsed() < self.after
+    }
+
+    fn see(&mut self, file: &Path, bytes: u64, written: Option<SystemTime>) -> Sight {
+        let now = match self.seen.get(file) {
+            Some(seen) if (seen.bytes, seen.written) == (bytes, written) => *seen,
+            before => Seen { bytes, written, since: Instant::now(), is_altered: before.is_some() },
         };
-        self.seen.insert(mounting, now);
-        let by_its_time = || changed.and_then(|changed| changed.elapsed().ok()).is_some_and(|age| age >= self.after);
-        let has_its_time = !now.is_altered && (now.is_again || self.looks_once);
-        now.since.elapsed() >= self.after || has_its_time && by_its_time()
+        self.seen.insert(file.to_owned(), now);
+        let age = written.and_then(|written| written.elapsed().ok()).filter(|_| !now.is_altered);
+        let watched = now.since.elapsed();
+        let is_standing = self.looks_once || watched >= STANDING.min(self.after);
+        Sight {
+            bytes,
+            written,
+            stood: if self.looks_once { age.unwrap_or_default() } else { watched },
+            changed: SystemTime::now().checked_sub(age.unwrap_or_default().max(watched)),
+            left_alone: watched >= self.after || is_standing && age.is_some_and(|age| age >= self.after),
+        }
     }
 }
 
@@ -52,28 +105,42 @@ mod tests {
     use super::*;
 
     const MINUTE: Duration = Duration::from_secs(60);
+    const SOON: Duration = Duration::from_millis(20);
 
     /// A file server whose clock lags by an hour dates a growing record back.
     #[test]
     fn a_record_that_grows_is_not_left_alone_whatever_its_time() {
         let lagging = || SystemTime::now().checked_sub(60 * MINUTE);
-        let mut quiet = Quiet::new(MINUTE, false);
+        let (mut quiet, file) = (Quiet::new(MINUTE, false), Path::new("m01.csv"));
         for bytes in 1..5 {
-            assert!(!quiet.is_left_alone(0, bytes, lagging()));
+            assert!(!quiet.see(file, bytes, lagging()).left_alone);
         }
-        let old = lagging();
-        assert!(!quiet.is_left_alone(1, 9, old), "it may grow");
-        assert!(quiet.is_left_alone(1, 9, old));
-        assert!(Quiet::new(MINUTE, true).is_left_alone(1, 9, old));
+        let changed = quiet.see(file, 5, lagging()).changed.unwrap();
+        assert!(changed.elapsed().unwrap() < MINUTE, "by the clock of the watch");
+        // Two looks alike between two lines of a recorder.
+        let (old, new) = (lagging(), Path::new("m02.csv"));
+        assert!(!quiet.see(new, 9, old).left_alone && !quiet.see(new, 9, old).left_alone, "it may grow");
+        assert!(Quiet::new(MINUTE, true).see(new, 9, old).left_alone);
+    }
+
+    /// Where a file has stood for a while, its time counts too.
+    #[test]
+    fn an_old_record_need_not_be_watched_for_long() {
+        let old = SystemTime::now().checked_sub(60 * MINUTE);
+        let (mut quiet, file) = (Quiet::new(SOON, false), Path::new("m01.csv"));
+        assert!(!quiet.see(file, 9, old).left_alone);
+        std::thread::sleep(SOON);
+        assert!(quiet.see(file, 9, old).left_alone);
     }
 
     /// A record dated to the future.
     #[test]
     fn a_record_that_stands_is_left_alone_whatever_its_time() {
         let future = SystemTime::now().checked_add(60 * MINUTE);
-        let mut quiet = Quiet::new(Duration::from_millis(20), false);
-        assert!(!quiet.is_left_alone(0, 9, future));
-        std::thread::sleep(Duration::from_millis(25));
-        assert!(quiet.is_left_alone(0, 9, future));
+        let (mut quiet, file) = (Quiet::new(SOON, false), Path::new("m01.csv"));
+        assert!(!quiet.see(file, 9, future).left_alone);
+        std::thread::sleep(SOON);
+        let sight = quiet.see(file, 9, future);
+        assert!(sight.left_alone && sight.stood >= SOON);
     }
 }

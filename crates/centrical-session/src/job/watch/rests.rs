@@ -1,20 +1,20 @@
 //! Rests in attitudes of their own, which join a watch when their files are there.
 
 use std::path::PathBuf;
-use std::time::Duration;
 
 use centrical::{Observation, OnProgress};
 
+use super::quiet::Quiet;
 use crate::error::Error;
 use crate::experiment::{RestTable, Session};
 use crate::job::reduce::with_all_rests;
 
-/// The session with the rests of every `[[tumble]]` whose files are there and have been left alone for the time called `quiet`. One whose
+/// The session with the rests of every `[[tumble]]` whose files are there and have been left alone for the time called quiet. One whose
 /// files are not is waited for, and so are those after it: rests are numbered in the order of the file.
 ///
 /// # Errors
 /// [`Error`] when a table or a record that has been left alone is wrong; [`Error::Stopped`].
-pub(super) fn with_rests_there(session: &Session, quiet: Duration, progress: OnProgress) -> Result<Session, Error> {
+pub(super) fn with_rests_there(session: &Session, quiet: &mut Quiet, progress: OnProgress) -> Result<Session, Error> {
     let mut tables = session.rest_tables.clone();
     let waited_for = tables.iter().position(|table| !is_there(table, quiet)).unwrap_or(tables.len());
     let later = tables.split_off(waited_for);
@@ -32,7 +32,7 @@ pub(super) fn awaited(session: &Session) -> Option<&PathBuf> {
 }
 
 /// Whether the rests that are waited for have come.
-pub(super) fn have_come(session: &Session, quiet: Duration) -> bool {
+pub(super) fn have_come(session: &Session, quiet: &mut Quiet) -> bool {
     session.rest_tables.iter().find(|table| table.is_awaited()).is_some_and(|table| is_there(table, quiet))
 }
 
@@ -43,10 +43,7 @@ pub(super) fn observations(session: &Session) -> Vec<Observation> {
     rests.map(|(set_point, rest)| rest.observation(set_point)).collect()
 }
 
-/// Whether all files of a table are there and have not changed for the time called `quiet`.
-fn is_there(table: &RestTable, quiet: Duration) -> bool {
-    table.files().all(|file| {
-        let changed = file.metadata().and_then(|metadata| metadata.modified()).ok();
-        changed.and_then(|changed| changed.elapsed().ok()).is_some_and(|age| age >= quiet)
-    })
+/// Whether all files of a table are there and have been left alone.
+fn is_there(table: &RestTable, quiet: &mut Quiet) -> bool {
+    quiet.look(table.files()).is_some_and(|sight| sight.left_alone)
 }
