@@ -14,6 +14,7 @@ mod lines;
 mod number;
 mod piece;
 mod prologue;
+mod separators;
 mod shape;
 mod unit_words;
 
