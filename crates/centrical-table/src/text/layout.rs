@@ -2,14 +2,14 @@
 
 use std::borrow::Cow;
 
-use memchr::{memchr2, memchr3};
+use memchr::memchr3;
 
 use super::fields::{Delimiter, Fault, number, unquoted};
 use super::lines::{is_data, numbered};
-use super::number::{Batch, ROWS, plain};
+use super::number::plain;
 use super::shape::{are_units, is_number};
 use super::unit_words::unit_in_any;
-use crate::column::{ColumnName, Field, LARGEST_NUMBER, Rows, Rule, is_missing};
+use crate::column::{ColumnName, Field, LARGEST_NUMBER, Rule, is_missing};
 use crate::error::quoted;
 use crate::stamp;
 
@@ -64,7 +64,7 @@ impl Layout {
     pub fn fit(&mut self, row: &[u8]) {
         let Ok(texts) = self.texts(row) else { return };
         let is_empty = |text: &Cow<[u8]>| unquoted(text).is_empty();
-        self.resize(texts.len(), texts.get(self.fields()..).is_some_and(|rest| rest.iter().all(is_empty)));
+        self.resize(texts.len(), texts.get(self.wanted.len()..).is_some_and(|rest| rest.iter().all(is_empty)));
     }
 
     /// Has `columns` fields from now on, if none is lost that is wanted and others may be added.
@@ -123,56 +123,9 @@ impl Layout {
         }
     }
 
-    /// Fields in a row.
-    pub fn fields(&self) -> usize {
-        self.wanted.len()
-    }
-
-    /// Reads rows of bare numbers, [`ROWS`] at most, that begin at `from`, have these separators and end at these; nothing where
-    /// one of them is anything else, right or wrong.
-    pub fn batch(
-        &self,
-        text: &[u8],
-        from: usize,
-        separators: &[u32],
-        ends: &[u32],
-        batch: &mut Batch,
-        rows: &mut Rows,
-    ) -> Option<()> {
-        let all = &text[from..*separators.last()? as usize];
-        // A delimiter within quotes divides nothing.
-        if text[from] == b'#' || self.wanted.contains(&None) && memchr2(b'"', b'#', all).is_some() {
-            return None;
-        }
-        // All of the lines end alike, or this is not for numbers that are taken together.
-        let with_return = all.ends_with(b"\r");
-        let is_return = |end: &u32| text[(*end as usize).wrapping_sub(1)] == b'\r';
-        if with_return && !ends.iter().all(is_return) {
-            return None;
-        }
-        let before = rows[0].len();
-        batch.column.begin(u32::try_from(from).ok()?, ends);
-        for (column, field) in self.wanted.iter().enumerate() {
-            batch.column.go_on(separators.chunks_exact(self.wanted.len()).map(|line| line[column]));
-            let is_last = column + 1 == self.wanted.len();
-            // If each line's last separator ends it, no other one does.
-            let mut is_plain = !is_last || batch.column.ends_at(ends);
-            if let Some(field) = field {
-                let values = &mut rows[*field];
-                values.resize(before + ROWS, 0.0);
-                let left_out = u32::from(is_last && with_return);
-                let numbers = values[before..].first_chunk_mut();
-                is_plain = is_plain && numbers.is_some_and(|numbers| batch.read(text, left_out, numbers));
-                values.truncate(before + ends.len());
-            }
-            if !is_plain {
-                for values in rows.iter_mut() {
-                    values.truncate(before);
-                }
-                return None;
-            }
-        }
-        Some(())
+    /// For every column of the file, the wanted field that it is.
+    pub fn wanted(&self) -> &[Option<usize>] {
+        &self.wanted
     }
 
     /// The row of bare numbers that a text begins with, and the length of its line; nothing where the line is anything

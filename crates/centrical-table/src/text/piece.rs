@@ -1,6 +1,6 @@
 //! A piece of text: from its lines to rows of numbers, up to the first fault.
 
-use memchr::{memchr_iter, memrchr};
+use memchr::{memchr_iter, memchr2, memrchr};
 
 use super::fields::Fault;
 use super::layout::Layout;
@@ -63,7 +63,7 @@ impl Piece {
         }
         let of_text = std::mem::take(&mut self.separators);
         let [mut separators, mut ends] = of_text.places();
-        let mut from = 0;
+        let (mut from, wanted) = (0, layout.wanted());
         let read = loop {
             // A number is taken with what is before it: the first ones of all are left to be read one by one.
             let most = if from < number::REACH { 1 } else { ROWS };
@@ -73,13 +73,13 @@ impl Piece {
                 let passed = |places: &[u32]| places.partition_point(|place| (*place as usize) < from);
                 (separators, ends) = (&separators[passed(separators)..], &ends[passed(ends)..]);
             }
-            let count = most.min(separators.len() / layout.fields()).min(ends.len());
-            let (of_batch, ends_of_batch) = (&separators[..count * layout.fields()], &ends[..count]);
+            let count = most.min(separators.len() / wanted.len()).min(ends.len());
+            let (of_batch, ends_of_batch) = (&separators[..count * wanted.len()], &ends[..count]);
             // Of a text that is read up to a fault, some are beyond it.
             if of_batch.last().is_none_or(|last| *last as usize >= text.len()) {
                 break self.read_rows(&text[from..], layout, fields, rows);
             }
-            if layout.batch(text, from, of_batch, ends_of_batch, &mut self.batch, rows).is_some() {
+            if self.read_batch(wanted, text, from, of_batch, ends_of_batch, rows).is_some() {
                 self.lines += count as u64;
                 from = of_batch[of_batch.len() - 1] as usize + 1;
                 (separators, ends) = (&separators[of_batch.len()..], &ends[count..]);
@@ -96,6 +96,53 @@ impl Piece {
         };
         self.separators = of_text;
         read
+    }
+
+    /// Reads rows of bare numbers, [`ROWS`] at most, that begin at `from`, have these separators and end at these; nothing where
+    /// one of them is anything else, right or wrong.
+    fn read_batch(
+        &mut self,
+        wanted: &[Option<usize>],
+        text: &[u8],
+        from: usize,
+        separators: &[u32],
+        ends: &[u32],
+        rows: &mut Rows,
+    ) -> Option<()> {
+        let all = &text[from..*separators.last()? as usize];
+        // A delimiter within quotes divides nothing.
+        if text[from] == b'#' || wanted.contains(&None) && memchr2(b'"', b'#', all).is_some() {
+            return None;
+        }
+        // All of the lines end alike, or this is not for numbers that are taken together.
+        let with_return = all.ends_with(b"\r");
+        let is_return = |end: &u32| text[(*end as usize).wrapping_sub(1)] == b'\r';
+        if with_return && !ends.iter().all(is_return) {
+            return None;
+        }
+        let before = rows[0].len();
+        self.batch.column.begin(u32::try_from(from).ok()?, ends);
+        for (column, field) in wanted.iter().enumerate() {
+            self.batch.column.go_on(separators.chunks_exact(wanted.len()).map(|line| line[column]));
+            let is_last = column + 1 == wanted.len();
+            // If each line's last separator ends it, no other one does.
+            let mut is_plain = !is_last || self.batch.column.ends_at(ends);
+            if let Some(field) = field {
+                let values = &mut rows[*field];
+                values.resize(before + ROWS, 0.0);
+                let left_out = u32::from(is_last && with_return);
+                let numbers = values[before..].first_chunk_mut();
+                is_plain = is_plain && numbers.is_some_and(|numbers| self.batch.read(text, left_out, numbers));
+                values.truncate(before + ends.len());
+            }
+            if !is_plain {
+                for values in rows.iter_mut() {
+                    values.truncate(before);
+                }
+                return None;
+            }
+        }
+        Some(())
     }
 
     /// Passes the blank lines that a text begins with, and returns their bytes. Many at once: a packed file may have billions.
