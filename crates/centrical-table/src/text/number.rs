@@ -102,7 +102,7 @@ fn joined(digits: u64) -> u64 {
 /// point are taken out, and what is before the point moves up; then its digits are joined as those of a single number.
 #[derive(Default)]
 pub(super) struct Batch {
-    pub column: Places,
+    pub column: Bounds,
     texts: Texts,
 }
 
@@ -116,19 +116,19 @@ impl Batch {
 }
 
 /// From where to where the numbers of a column stand. Those of rows that are not there stand where the last one does.
-pub(super) struct Places {
+pub(super) struct Bounds {
     rows: usize,
     starts: [u32; ROWS],
     ends: [u32; ROWS],
 }
 
-impl Default for Places {
+impl Default for Bounds {
     fn default() -> Self {
         Self { rows: 0, starts: [0; ROWS], ends: [0; ROWS] }
     }
 }
 
-impl Places {
+impl Bounds {
     /// Begins before the first column of rows: the first row starts at `from`, and `ends` are their ends, [`ROWS`] at most.
     #[inline]
     pub fn begin(&mut self, from: u32, ends: &[u32]) {
@@ -190,15 +190,15 @@ impl Default for Texts {
 }
 
 impl Texts {
-    /// The numbers at these places in a text, as [`Batch::read`] gives them.
-    fn read(&mut self, text: &[u8], places: &Places, numbers: &mut [f64; ROWS]) -> bool {
-        self.take(text, places) && Arch::new().dispatch(Words { texts: self, places, numbers })
+    /// The numbers within these bounds in a text, as [`Batch::read`] gives them.
+    fn read(&mut self, text: &[u8], bounds: &Bounds, numbers: &mut [f64; ROWS]) -> bool {
+        self.take(text, bounds) && Arch::new().dispatch(Words { texts: self, bounds, numbers })
     }
 
-    /// Takes what is at these places; whether none of them is too near to the begin of the text.
-    fn take(&mut self, text: &[u8], places: &Places) -> bool {
+    /// Takes what is within these bounds; whether none of them is too near to the begin of the text.
+    fn take(&mut self, text: &[u8], bounds: &Bounds) -> bool {
         let mut taken = true;
-        for (row, (start, end)) in places.starts.iter().zip(&places.ends).enumerate() {
+        for (row, (start, end)) in bounds.starts.iter().zip(&bounds.ends).enumerate() {
             taken &= self.take_one(row, text, *start as usize, *end as usize);
         }
         taken
@@ -219,7 +219,7 @@ impl Texts {
 
 struct Words<'a> {
     texts: &'a Texts,
-    places: &'a Places,
+    bounds: &'a Bounds,
     numbers: &'a mut [f64; ROWS],
 }
 
@@ -228,8 +228,8 @@ impl WithSimd for Words<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) -> bool {
-        let Self { texts, places, numbers } = self;
-        let [shortest, longest] = places.lengths();
+        let Self { texts, bounds, numbers } = self;
+        let [shortest, longest] = bounds.lengths();
         // What is known of all of them need not be asked of each.
         if shortest == 0 || longest > 16 {
             false
