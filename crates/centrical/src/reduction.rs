@@ -38,6 +38,7 @@ mod mistake;
 mod plateau;
 mod record;
 mod rests;
+mod shape;
 mod simd;
 mod speed;
 mod steady;

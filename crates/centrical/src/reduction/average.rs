@@ -1,20 +1,20 @@
 //! Second pass: the mean of each plateau from the samples of its window, a part at a time.
 
 mod cells;
-
 mod samples;
 mod strips;
 
 use nalgebra::{Matrix3, Vector3};
 
 use super::error::ReductionError;
-use super::locate::{ClockAgreement, Located, Shape, TURNING, Timing, Window};
+use super::locate::{ClockAgreement, Located, Timing};
 use super::plateau::{Arc, LeftOut};
 use super::record::RecordSlice;
+use super::shape::{Shape, TURNING, Window};
 use super::survey::Blocks;
 use super::triangle::Triangle;
 use crate::model::Position;
-use crate::statistics::{may_be_piled_up, piled_up};
+use crate::statistics::{may_be_piled_up, piled_up, whole};
 pub(super) use cells::{Cells, Markov, Weights};
 pub(super) use samples::CELLS;
 use samples::Samples;
@@ -95,7 +95,7 @@ impl Located {
 impl<'a> Averaging<'a> {
     /// Begins with no samples.
     pub fn new(located: &'a Located, index: usize) -> Self {
-        Self::in_parts(located, index, located.parts(index))
+        Self::in_parts(located, index, parts(located.windows[index].span, located.blocks.interval))
     }
 
     /// Begins with no samples, for these parts of the window, from and to [s], in the order of time.
@@ -292,6 +292,15 @@ impl ReducedMounting {
     pub fn clock_agreement(&self) -> Option<ClockAgreement> {
         self.timing.agreement
     }
+}
+
+/// A window in parts, from and to [s], each short enough to be held in memory.
+fn parts([from, to]: [f64; 2], interval: f64) -> Vec<[f64; 2]> {
+    /// Most samples of a part.
+    const PART: f64 = 1e6;
+    let count = whole(((to - from) / (PART * interval)).ceil()).max(1);
+    let end = |k: usize| if k == count { to } else { from + (to - from) * (k as f64 / count as f64) };
+    (0..count).map(|k| [if k == 0 { from } else { end(k).next_up() }, end(k + 1)]).collect()
 }
 
 /// Refuses good readings that pile up at the end of their range: the part cut off is missing in the mean.

@@ -9,7 +9,6 @@ mod hypothesis;
 mod path;
 mod rests;
 mod rotation;
-mod shape;
 mod tachometer;
 mod turning;
 mod window;
@@ -20,11 +19,10 @@ use nalgebra::Vector3;
 
 use super::error::ReductionError;
 use super::plateau::ScheduledPlateau;
+use super::shape::{Interval, Shape, Window};
 use super::survey::{Blocks, Survey};
-use crate::statistics::whole;
 pub use clock::{ClockAgreement, SpeedTrace};
 use hypothesis::Line;
-pub(super) use shape::{Interval, Shape, TURNING, Window};
 pub use tachometer::{PulseTrain, SpeedReading};
 
 /// What telemetry or a counter of revolutions says of the plateaus of a record.
@@ -44,9 +42,6 @@ impl Timing {
         Self { speeds: vec![None; plateaus], readings: vec![None; plateaus], ..Self::default() }
     }
 }
-
-/// Most samples of a part of a window.
-const PART: f64 = 1e6;
 
 /// The plateaus of a mounting, found in its record.
 #[derive(Debug, Clone)]
@@ -199,13 +194,5 @@ impl Located {
     /// The window of each plateau, from and to, the record's clock [s], in the order of the schedule.
     pub fn windows(&self) -> Vec<[f64; 2]> {
         self.windows.iter().map(|window| window.span).collect()
-    }
-
-    /// The window of a plateau in parts, from and to [s], each short enough to be held in memory.
-    pub(super) fn parts(&self, plateau: usize) -> Vec<[f64; 2]> {
-        let [from, to] = self.windows[plateau].span;
-        let count = whole(((to - from) / (PART * self.blocks.interval)).ceil()).max(1);
-        let end = |k: usize| if k == count { to } else { from + (to - from) * (k as f64 / count as f64) };
-        (0..count).map(|k| [if k == 0 { from } else { end(k).next_up() }, end(k + 1)]).collect()
     }
 }

@@ -26,8 +26,8 @@ use nalgebra::{DMatrix, DVector, Vector3};
 use super::average::PlateauFit;
 use super::ellipsoid::Ellipsoid;
 use super::error::ReductionError;
-use super::locate::{Interval, TURNING};
 use super::record::{Record, RecordSlice};
+use super::shape::{Interval, TURNING};
 use super::survey::Survey;
 use crate::model::STANDARD_GRAVITY;
 

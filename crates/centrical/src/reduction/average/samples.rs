@@ -7,9 +7,9 @@ use std::ops::Range;
 use nalgebra::Vector3;
 
 use crate::reduction::error::ReductionError;
-use crate::reduction::locate::{Shape, Window};
 use crate::reduction::plateau::LeftOut;
 use crate::reduction::record::RecordSlice;
+use crate::reduction::shape::{Shape, Window};
 use crate::reduction::simd::lanes::subtract_all;
 use crate::reduction::survey::Blocks;
 use crate::reduction::triangle::Triangle;

@@ -5,7 +5,7 @@ use std::ops::Range;
 use nalgebra::Vector3;
 use pulp::{Simd, WithSimd};
 
-use super::shape::Shape;
+use crate::reduction::shape::Shape;
 use crate::reduction::simd::lanes::{subtract, subtract_all, widest};
 use crate::reduction::survey::Blocks;
 use crate::reduction::triangle::{Rows, TERMS, Triangle};

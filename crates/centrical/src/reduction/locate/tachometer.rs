@@ -10,9 +10,8 @@ use std::f64::consts::TAU;
 use nalgebra::{DMatrix, DVector};
 
 use super::clock::SpeedTrace;
-use super::shape::FADED;
-use super::shape::Window;
 use crate::linalg::least_squares::LeastSquares;
+use crate::reduction::shape::{FADED, Window};
 use crate::statistics::{MAD, median, whole};
 
 /// Pulses of an index mark or of an encoder.

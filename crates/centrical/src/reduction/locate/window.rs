@@ -13,9 +13,9 @@ use pulp::{Simd, WithSimd};
 use rayon::prelude::*;
 
 use super::block_fit::{BlockFit, Levels, spread};
-use super::shape::{FADED, Settling, Shape, Window};
 use crate::reduction::error::ReductionError;
 use crate::reduction::plateau::ScheduledPlateau;
+use crate::reduction::shape::{FADED, Settling, Shape, Window};
 use crate::reduction::simd::lanes::{dot, widest};
 use crate::reduction::survey::Blocks;
 use crate::statistics::{cut, median};

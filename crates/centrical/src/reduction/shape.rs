@@ -2,18 +2,18 @@
 
 use pulp::{Simd, WithSimd};
 
-use crate::reduction::simd::elementary::{cos_sin, exp};
-use crate::reduction::simd::lanes::widest;
+use super::simd::elementary::{cos_sin, exp};
+use super::simd::lanes::widest;
 
 /// Time constants after which the settling is below the rounding of a reading.
 pub(super) const FADED: f64 = 40.0;
 
 /// Terms of a unit that turns, beside the constant.
-pub(in crate::reduction) const TURNING: usize = 3;
+pub(super) const TURNING: usize = 3;
 
 /// The part of the record that a mean is taken over.
 #[derive(Debug, Clone, Copy)]
-pub(in crate::reduction) struct Window {
+pub(super) struct Window {
     /// From, to [s].
     pub span: [f64; 2],
     /// The fitted terms.
@@ -22,7 +22,7 @@ pub(in crate::reduction) struct Window {
 
 /// The terms of a plateau: `[cos, sin,] [settling,] 1`, or `P_1, P_2, P_3, 1` of a unit that turns. The constant stands last.
 #[derive(Debug, Clone, Copy)]
-pub(in crate::reduction) struct Shape {
+pub(super) struct Shape {
     /// Origin of phase and settling [s].
     pub start: f64,
     /// Speed [rad/s]; 0 for no once-per-revolution term.
@@ -35,7 +35,7 @@ pub(in crate::reduction) struct Shape {
 
 /// An interval of time, on which Legendre polynomials are orthogonal.
 #[derive(Debug, Clone, Copy)]
-pub(in crate::reduction) struct Interval {
+pub(super) struct Interval {
     /// Its middle [s].
     pub middle: f64,
     /// Half of its length [s].
@@ -46,7 +46,7 @@ pub(in crate::reduction) struct Interval {
 /// speed, settles by
 /// `2 epsilon (exp(-x) + epsilon/2 exp(-2x))`.
 #[derive(Debug, Clone, Copy)]
-pub(in crate::reduction) struct Settling {
+pub(super) struct Settling {
     /// Time constant [s].
     pub time: f64,
     /// `epsilon / 2`: a quarter of the relative error of the force at the start.
