@@ -1,7 +1,6 @@
 //! Where the scheduled plateaus are in a surveyed record, and which part of each is averaged.
 
 mod align;
-mod band;
 mod block_fit;
 mod clock;
 mod evidence;

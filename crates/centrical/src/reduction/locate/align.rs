@@ -8,8 +8,8 @@ use rayon::prelude::*;
 
 use super::evidence::{Candidate, Evidence};
 use super::hypothesis::Line;
-use super::path::Trellis;
-use super::{band, hypothesis, rotation};
+use super::path::{Band, Trellis};
+use super::{hypothesis, rotation};
 use crate::reduction::error::{ReductionError, Stretch};
 use crate::reduction::plateau::ScheduledPlateau;
 use crate::reduction::survey::Blocks;
@@ -129,8 +129,14 @@ fn first_path<'a>(
     let blocks = evidence.blocks();
     let candidates: Vec<Candidate> = schedule.par_iter().map(|plateau| evidence.of(plateau)).collect();
     let between = evidence.in_transition();
-    let on = |k: usize, from: usize, density: &mut [f64]| candidates[k].density(evidence.noise(), from, density);
-    let cores = band::best_path(&evidence.steady_stretches(), schedule.len(), &between, on);
+    let noise = vec![*evidence.noise(); candidates.len()];
+    let mut band = Band::new(&evidence.steady_stretches(), blocks.len(), candidates.len());
+    let search = |band: &Band| best_path(&band.within(), &between, &candidates, &noise);
+    let mut cores = search(&band);
+    while !band.holds(&cores) {
+        band.reach *= 2;
+        cores = search(&band);
+    }
     if let Some(index) = missing(&cores) {
         let ScheduledPlateau { omega, nominal_z } = schedule[index];
         let stretches = evidence.steady_stretches().into_iter();
@@ -163,12 +169,11 @@ impl FirstPath<'_> {
             let level_z = blocks.level(&cores[k]);
             neighbours.for_each(|neighbour| candidate.leave_to(neighbour, &schedule[k], &level_z));
         }
-        let mut trellis = Trellis::new(&between_neighbours(&cores, blocks.len()), blocks.len());
+        let within = between_neighbours(&cores, blocks.len());
         for _ in 0..ROUNDS {
             let own = candidates.par_iter().zip(&cores).map(|(candidate, core)| candidate.noise_of_change(core));
             let own: Vec<Vector3<f64>> = own.collect();
-            let on = |k: usize, from: usize, density: &mut [f64]| candidates[k].density(&own[k], from, density);
-            let next = trellis.best_path(&between, on);
+            let next = best_path(&within, &between, &candidates, &own);
             if next == cores || missing(&next).is_some() {
                 break;
             }
@@ -176,6 +181,22 @@ impl FirstPath<'_> {
         }
         cores
     }
+}
+
+/// The best path through plateaus that may each be `within` some blocks: by the densities in transition, and those on each candidate by
+/// its noise.
+fn best_path(
+    within: &[Range<usize>],
+    between: &[f64],
+    candidates: &[Candidate],
+    noise: &[Vector3<f64>],
+) -> Vec<Range<usize>> {
+    let mut trellis = Trellis::new(within, between.len());
+    while let Some(from) = trellis.next_layer() {
+        trellis.plateaus().for_each(|(k, density)| candidates[k].density(&noise[k], from, density));
+        trellis.take(between);
+    }
+    trellis.best_path()
 }
 
 /// From the begin of the plateau before to the end of the plateau after, of each.
