@@ -67,11 +67,13 @@ pub(super) struct Sums {
 }
 
 /// A fit that samples are judged by.
-struct Fit {
+struct Fit<'a> {
     /// Of the readings less the reference [m/s^2].
     coefficients: [[f64; 3]; TERMS],
     /// Largest residual of a good sample [m/s^2].
     limits: [f64; 3],
+    /// The stuck samples, if any: they are bad.
+    stuck: Option<&'a [bool]>,
     /// Whether bad samples stay out.
     once_out: bool,
 }
@@ -100,19 +102,17 @@ impl<'a> Strips<'a> {
         };
         let first = fitted.each.len();
         fitted.each.extend(samples.cells().enumerate().flat_map(of_cell));
-        let mut strips = Self { samples, stuck: None, fitted, first, wider: Vector3::repeat(1.0) };
         let longest = samples.repeat_rate.map(|rate| longest_run(samples.len(), rate));
-        let mut may_be_stuck = false;
-        strips.each(|strip, strips, room| {
-            widest(Work { strip, strips, fit: None, room });
+        let (mut may_be_stuck, mut room) = (false, Room::EMPTY);
+        for strip in &mut fitted.each[first..] {
+            widest(Work { strip, samples, reference: fitted.reference, fit: None, room: &mut room });
             // Checked while the readings are in the cache.
             may_be_stuck =
                 may_be_stuck || (0..3).any(|axis| may_be_longer(&samples.f_z[axis], &strip.range, longest[axis]));
-        });
-        if may_be_stuck {
-            strips.stuck = stuck_on_any_axis(samples.f_z.each_ref().map(|f| &**f), &longest);
         }
-        strips
+        let readings = samples.f_z.each_ref().map(|f| &**f);
+        let stuck = if may_be_stuck { stuck_on_any_axis(readings, &longest) } else { None };
+        Self { samples, stuck, fitted, first, wider: Vector3::repeat(1.0) }
     }
 
     /// Judges the samples by a fit whose last terms have these coefficients; true if the set of good samples changed. With
@@ -145,20 +145,15 @@ impl<'a> Strips<'a> {
     }
 
     fn judge_within(&mut self, limits: [f64; 3], coefficients: &[Vector3<f64>], once_out: bool) -> bool {
-        let fit = Fit { coefficients: self.fitted.less_reference(coefficients), limits, once_out };
-        let mut changed = false;
-        self.each(|strip, strips, room| changed |= widest(Work { strip, strips, fit: Some(&fit), room }));
-        changed
-    }
-
-    /// Works on one strip after another.
-    fn each(&mut self, mut work: impl FnMut(&mut Strip, &Self, &mut Room)) {
-        let mut each = std::mem::take(&mut self.fitted.each);
-        let mut room = Room::EMPTY;
-        for strip in &mut each[self.first..] {
-            work(strip, self, &mut room);
+        let Self { samples, stuck, fitted, first, .. } = self;
+        let (coefficients, stuck) = (fitted.less_reference(coefficients), stuck.as_deref());
+        let fit = Fit { coefficients, limits, stuck, once_out };
+        let (mut changed, mut room) = (false, Room::EMPTY);
+        for strip in &mut fitted.each[*first..] {
+            let work = Work { strip, samples, reference: fitted.reference, fit: Some(&fit), room: &mut room };
+            changed |= widest(work);
         }
-        self.fitted.each = each;
+        changed
     }
 
     fn part(&self) -> &[Strip] {
@@ -253,8 +248,10 @@ impl Fitted {
 /// A strip to be judged by a fit, or without one to be fitted on its own. The output is whether the set of good samples changed.
 struct Work<'a> {
     strip: &'a mut Strip,
-    strips: &'a Strips<'a>,
-    fit: Option<&'a Fit>,
+    samples: &'a Samples<'a>,
+    /// That of [`Fitted`] [m/s^2].
+    reference: [f64; 3],
+    fit: Option<&'a Fit<'a>>,
     room: &'a mut Room,
 }
 
@@ -263,12 +260,12 @@ impl WithSimd for Work<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> bool {
-        let Self { strip, strips, fit, room } = self;
+        let Self { strip, samples, reference, fit, room } = self;
         let Some(fit) = fit else {
-            strip.orthogonalise(simd, strips, room);
+            strip.orthogonalise(simd, samples, reference, room);
             return false;
         };
-        !strip.is_within(strips, fit) && strip.judge(simd, strips, fit, room)
+        !strip.is_within(fit) && strip.judge(simd, samples, reference, fit, room)
     }
 }
 
@@ -292,16 +289,16 @@ impl Strip {
 
     /// The strip's own fit to its good samples.
     #[inline(always)]
-    fn orthogonalise<S: Simd>(&mut self, simd: S, strips: &Strips, room: &mut Room) {
+    fn orthogonalise<S: Simd>(&mut self, simd: S, samples: &Samples, reference: [f64; 3], room: &mut Room) {
         let n = self.range.len();
         let mut columns = room.columns.each_mut().map(|column| &mut column[..n]);
-        let columns = &mut columns[..strips.fitted.terms];
+        let columns = &mut columns[..samples.window.shape.terms()];
         let mut readings = room.readings.each_mut().map(|reading| &mut reading[..n]);
-        strips.samples.window.shape.design(&strips.samples.t[self.range.clone()], columns);
+        samples.window.shape.design(&samples.t[self.range.clone()], columns);
         for (axis, reading) in readings.iter_mut().enumerate() {
-            let (f, reference) = (&strips.samples.f_z[axis][self.range.clone()], strips.fitted.reference[axis]);
+            let f = &samples.f_z[axis][self.range.clone()];
             for (reading, f) in reading.iter_mut().zip(f) {
-                *reading = f - reference;
+                *reading = f - reference[axis];
             }
             [self.low[axis], self.high[axis]] = if self.bad.is_empty() { range(f) } else { self.range_of_good(f) };
         }
@@ -326,24 +323,24 @@ impl Strip {
     /// Whether a bound shows all samples to be good: a residual is the sum of that of the strip's own fit and of what the
     /// coefficients leave in the directions of `Q`.
     #[inline(always)]
-    fn is_within(&self, strips: &Strips, fit: &Fit) -> bool {
+    fn is_within(&self, fit: &Fit) -> bool {
         let left = self.triangle.left(&fit.coefficients);
         let is_within = |axis: usize| {
             let of_directions: f64 = left.iter().zip(&self.reach).map(|(left, reach)| left[axis].abs() * reach).sum();
             // Unreadable readings leave no finite sum of squares.
             self.largest[axis] + of_directions <= fit.limits[axis] && self.squares[axis].is_finite()
         };
-        self.bad.is_empty() && strips.stuck.is_none() && is_within(0) && is_within(1) && is_within(2)
+        self.bad.is_empty() && fit.stuck.is_none() && is_within(0) && is_within(1) && is_within(2)
     }
 
     /// Judges the samples one by one; true if the set of good samples changed.
     #[inline(always)]
-    fn judge<S: Simd>(&mut self, simd: S, strips: &Strips, fit: &Fit, room: &mut Room) -> bool {
-        let bad = self.bad_by(strips, fit, room);
+    fn judge<S: Simd>(&mut self, simd: S, samples: &Samples, reference: [f64; 3], fit: &Fit, room: &mut Room) -> bool {
+        let bad = self.bad_by(samples, reference, fit, room);
         let changed = bad != self.bad;
         if changed {
             self.bad = bad;
-            self.orthogonalise(simd, strips, room);
+            self.orthogonalise(simd, samples, reference, room);
         }
         changed
     }
@@ -351,22 +348,22 @@ impl Strip {
     /// The samples that are spikes or stuck on any axis. The limits are symmetric, so that the mean of good samples is not
     /// biased.
     #[inline(always)]
-    fn bad_by(&self, strips: &Strips, fit: &Fit, room: &mut Room) -> Vec<usize> {
-        let (n, samples) = (self.range.len(), strips.samples);
+    fn bad_by(&self, samples: &Samples, reference: [f64; 3], fit: &Fit, room: &mut Room) -> Vec<usize> {
+        let n = self.range.len();
         let mut columns = room.columns.each_mut().map(|column| &mut column[..n]);
-        let columns = &mut columns[..strips.fitted.terms];
+        let columns = &mut columns[..samples.window.shape.terms()];
         samples.window.shape.design(&samples.t[self.range.clone()], columns);
         let mut residuals = room.readings.each_mut().map(|reading| &mut reading[..n]);
         for (axis, residuals) in residuals.iter_mut().enumerate() {
             let f = &samples.f_z[axis][self.range.clone()];
             for (residual, f) in residuals.iter_mut().zip(f) {
-                *residual = f - strips.fitted.reference[axis];
+                *residual = f - reference[axis];
             }
             for (column, b) in columns.iter().zip(&fit.coefficients) {
                 subtract(residuals, b[axis], column);
             }
         }
-        let stuck = strips.stuck.as_ref().map(|stuck| &stuck[self.range.clone()]);
+        let stuck = fit.stuck.map(|stuck| &stuck[self.range.clone()]);
         let is_bad = |i: &usize| {
             // Comparison with a NaN is false: an unreadable sample is bad.
             let is_within = (0..3).all(|axis| residuals[axis][*i].abs() <= fit.limits[axis]);
