@@ -87,7 +87,7 @@ mod tests {
     use nalgebra::Vector3;
 
     use super::*;
-    use crate::reduction::simd::lanes::tests::on_all;
+    use crate::reduction::simd::tests::on_all;
     use crate::statistics::Random;
 
     const RATE: f64 = 250.0;

@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 use pulp::{Simd, WithSimd};
 
 use super::record::RecordSlice;
-use super::simd::lanes::{LANES, joined, range, sum, widest};
+use super::simd::{LANES, joined, range, sum, widest};
 use crate::statistics::{MAD, cut, median, whole};
 
 /// Shortest block [s]: a centrifuge's arm changes its speed in seconds, not in tenths.

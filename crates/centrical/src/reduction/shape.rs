@@ -2,8 +2,7 @@
 
 use pulp::{Simd, WithSimd};
 
-use super::simd::elementary::{cos_sin, exp};
-use super::simd::lanes::widest;
+use super::simd::{cos_sin, exp, widest};
 
 /// Time constants after which the settling is below the rounding of a reading.
 pub(super) const FADED: f64 = 40.0;

@@ -5,7 +5,7 @@
 use nalgebra::Vector3;
 use pulp::{Simd, WithSimd};
 
-use crate::reduction::simd::lanes::{dot, product, subtract, widest};
+use crate::reduction::simd::{dot, product, subtract, widest};
 
 /// Columns of a design: two of the revolution, settling, constant; in a slow rotation three of the turning, constant.
 pub(super) const TERMS: usize = 4;

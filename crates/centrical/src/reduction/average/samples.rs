@@ -10,7 +10,7 @@ use crate::reduction::error::ReductionError;
 use crate::reduction::plateau::LeftOut;
 use crate::reduction::record::RecordSlice;
 use crate::reduction::shape::{Shape, Window};
-use crate::reduction::simd::lanes::subtract_all;
+use crate::reduction::simd::subtract_all;
 use crate::reduction::survey::Blocks;
 use crate::reduction::triangle::Triangle;
 use crate::statistics::{MAD, cut, median, whole};

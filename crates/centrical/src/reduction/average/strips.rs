@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 use pulp::{Simd, WithSimd};
 
 use super::samples::Samples;
-use crate::reduction::simd::lanes::{dot, largest, range, subtract, widest};
+use crate::reduction::simd::{dot, largest, range, subtract, widest};
 use crate::reduction::triangle::{TERMS, Triangle};
 use crate::statistics::{is_tone, longest_run, may_be_longer, stuck_on_any_axis, widened};
 

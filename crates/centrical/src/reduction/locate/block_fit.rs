@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 use pulp::{Simd, WithSimd};
 
 use crate::reduction::shape::Shape;
-use crate::reduction::simd::lanes::{subtract, subtract_all, widest};
+use crate::reduction::simd::{subtract, subtract_all, widest};
 use crate::reduction::survey::Blocks;
 use crate::reduction::triangle::{Rows, TERMS, Triangle};
 use crate::statistics::{MAD, median};

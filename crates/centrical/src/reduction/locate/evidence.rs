@@ -12,8 +12,7 @@ use pulp::{Simd, WithSimd};
 
 use super::path::LAYER;
 use crate::reduction::plateau::ScheduledPlateau;
-use crate::reduction::simd::elementary::{exp, ln};
-use crate::reduction::simd::lanes::widest;
+use crate::reduction::simd::{exp, ln, widest};
 use crate::reduction::survey::Blocks;
 use crate::statistics::{MAD, median, whole};
 

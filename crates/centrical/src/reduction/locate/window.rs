@@ -16,7 +16,7 @@ use super::block_fit::{BlockFit, Levels, spread};
 use crate::reduction::error::ReductionError;
 use crate::reduction::plateau::ScheduledPlateau;
 use crate::reduction::shape::{FADED, Settling, Shape, Window};
-use crate::reduction::simd::lanes::{dot, widest};
+use crate::reduction::simd::{dot, widest};
 use crate::reduction::survey::Blocks;
 use crate::statistics::{cut, median};
 
