@@ -38,13 +38,12 @@ mod mistake;
 mod plateau;
 mod record;
 mod rests;
-mod shape;
 mod simd;
 mod speed;
 mod steady;
 mod survey;
+mod terms;
 mod trembling;
-mod triangle;
 mod turning;
 
 pub use average::{Averaging, PlateauFit, ReducedMounting};

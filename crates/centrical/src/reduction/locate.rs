@@ -18,8 +18,8 @@ use nalgebra::Vector3;
 
 use super::error::ReductionError;
 use super::plateau::ScheduledPlateau;
-use super::shape::{Interval, Shape, Window};
 use super::survey::{Blocks, Survey};
+use super::terms::{Interval, Shape, Window};
 pub use clock::{ClockAgreement, SpeedTrace};
 use hypothesis::Line;
 pub use tachometer::{PulseTrain, SpeedReading};

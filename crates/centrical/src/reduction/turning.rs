@@ -27,8 +27,8 @@ use super::average::PlateauFit;
 use super::ellipsoid::Ellipsoid;
 use super::error::ReductionError;
 use super::record::{Record, RecordSlice};
-use super::shape::{Interval, TURNING};
 use super::survey::Survey;
+use super::terms::{Interval, TURNING};
 use crate::model::STANDARD_GRAVITY;
 
 /// Rounds in which ellipsoid and means follow from each other: each gains two digits or more.

@@ -7,7 +7,7 @@ use pulp::{Simd, WithSimd};
 use super::samples::CELLS;
 use super::strips::Sums;
 use crate::reduction::simd::{dot, product, widest};
-use crate::reduction::triangle::{TERMS, Triangle};
+use crate::reduction::terms::{TERMS, Triangle};
 
 /// Sums over the good samples of each cell.
 #[derive(Debug, Clone)]

@@ -9,10 +9,9 @@ use nalgebra::Vector3;
 use crate::reduction::error::ReductionError;
 use crate::reduction::plateau::LeftOut;
 use crate::reduction::record::RecordSlice;
-use crate::reduction::shape::{Shape, Window};
 use crate::reduction::simd::subtract_all;
 use crate::reduction::survey::Blocks;
-use crate::reduction::triangle::Triangle;
+use crate::reduction::terms::{Shape, Triangle, Window};
 use crate::statistics::{MAD, cut, median, whole};
 use crate::statistics::{Side, standing};
 

@@ -7,7 +7,7 @@ use pulp::{Simd, WithSimd};
 
 use super::samples::Samples;
 use crate::reduction::simd::{dot, largest, range, subtract, widest};
-use crate::reduction::triangle::{TERMS, Triangle};
+use crate::reduction::terms::{TERMS, Triangle};
 use crate::statistics::{is_tone, longest_run, may_be_longer, stuck_on_any_axis, widened};
 
 /// Most samples of a strip.

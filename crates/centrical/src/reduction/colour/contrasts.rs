@@ -11,7 +11,7 @@ use rayon::prelude::*;
 
 use super::posterior::Power;
 use crate::reduction::average::{CELLS, Markov, PlateauFit, Weights};
-use crate::reduction::shape::TURNING;
+use crate::reduction::terms::TURNING;
 use crate::statistics::{chi_squared_tail, whole};
 
 /// Cosines of nearly the same frequency are pooled: groups per octave.

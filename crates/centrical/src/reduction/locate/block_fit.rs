@@ -5,10 +5,9 @@ use std::ops::Range;
 use nalgebra::Vector3;
 use pulp::{Simd, WithSimd};
 
-use crate::reduction::shape::Shape;
 use crate::reduction::simd::{subtract, subtract_all, widest};
 use crate::reduction::survey::Blocks;
-use crate::reduction::triangle::{Rows, TERMS, Triangle};
+use crate::reduction::terms::{Rows, Shape, TERMS, Triangle};
 use crate::statistics::{MAD, median};
 
 /// Blocks that are orthogonalised once for all ranges.

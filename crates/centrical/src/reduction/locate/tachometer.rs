@@ -11,7 +11,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::clock::SpeedTrace;
 use crate::linalg::least_squares::LeastSquares;
-use crate::reduction::shape::{FADED, Window};
+use crate::reduction::terms::{FADED, Window};
 use crate::statistics::{MAD, median, whole};
 
 /// Pulses of an index mark or of an encoder.

@@ -15,9 +15,9 @@ use rayon::prelude::*;
 use super::block_fit::{BlockFit, Levels, spread};
 use crate::reduction::error::ReductionError;
 use crate::reduction::plateau::ScheduledPlateau;
-use crate::reduction::shape::{FADED, Settling, Shape, Window};
 use crate::reduction::simd::{dot, widest};
 use crate::reduction::survey::Blocks;
+use crate::reduction::terms::{FADED, Settling, Shape, Window};
 use crate::statistics::{cut, median};
 
 /// The windows of one mounting.
