@@ -91,13 +91,6 @@ pub(crate) const ROWS: usize = 16 * 1024;
 /// Rows of a table: the values of each field, in columns of equal length.
 pub type Rows = Vec<Vec<f64>>;
 
-/// `(value - offset) factor` of each value of a column, in place.
-pub fn to_scale(values: &mut [f64], offset: f64, factor: f64) {
-    for value in values {
-        *value = (*value - offset) * factor;
-    }
-}
-
 /// The rows before those that are read next.
 #[derive(Debug)]
 pub(crate) struct Before {

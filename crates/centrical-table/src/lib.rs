@@ -55,10 +55,10 @@ mod write;
 pub use bytes::Bytes;
 
 pub use binary::{Cell, Kind, TypedColumn, TypedReader};
-pub use column::{ColumnName, Field, LARGEST_NUMBER, Rows, Rule, TableLines, UnitsFound, is_missing, to_scale};
+pub use column::{ColumnName, Field, LARGEST_NUMBER, Rows, Rule, TableLines, UnitsFound, is_missing};
 pub use error::{Error, Place, quoted, shown_path};
 pub use foreign::{cut, escaped, harmless, harmless_line};
-pub use reader::{Extent, TableReader, binary_columns, estimate_rows, text_form};
+pub use reader::{Extent, TableReader, binary_columns, estimate_rows, text_form, to_scale};
 pub use source::{Source, SourceReader};
 pub use stamp::{StampKind, Stamps};
 pub use text::{DecimalSign, Index, Reread, StampColumn, TextEncoding, TextForm, unit_beside_name, unit_of_word};

@@ -178,6 +178,13 @@ impl Table {
     }
 }
 
+/// `(value - offset) factor` of each value of a column, in place.
+pub fn to_scale(values: &mut [f64], offset: f64, factor: f64) {
+    for value in values {
+        *value = (*value - offset) * factor;
+    }
+}
+
 /// Rows that a file of this length can hold: a packed file can claim any number of them.
 fn most_rows(length: u64) -> u64 {
     ROWS_ALLOWANCE + ROWS_PER_BYTE * length
