@@ -12,8 +12,7 @@ use crate::reduction::record::RecordSlice;
 use crate::reduction::simd::subtract_all;
 use crate::reduction::survey::Blocks;
 use crate::reduction::terms::{Shape, Triangle, Window};
-use crate::statistics::{MAD, cut, median, whole};
-use crate::statistics::{Side, standing};
+use crate::statistics::{MAD, Side, cut, median, standing, whole};
 
 /// Equal intervals of a window, for the slow part of the noise.
 pub(in crate::reduction) const CELLS: usize = 128;
@@ -128,19 +127,13 @@ impl<'a> Samples<'a> {
     }
 
     /// The samples on both sides of a fit with these coefficients and limits, on each axis: those that are usable, cell by cell.
-    pub fn sides(
-        &self,
-        coefficients: &[Vector3<f64>],
-        limits: &Vector3<f64>,
-        is_usable: impl Fn(usize) -> bool,
-    ) -> [[Side; 2]; 3] {
+    pub fn sides(&self, coefficients: &[Vector3<f64>], limits: &Vector3<f64>, usable: &[bool]) -> [[Side; 2]; 3] {
         let mut sides = [[Side::default(); 2]; 3];
         for cell in self.cells() {
             let columns = self.window.shape.columns(&self.t[cell.clone()]);
-            let usable: Vec<bool> = cell.clone().map(&is_usable).collect();
             for (axis, sides) in sides.iter_mut().enumerate() {
                 let residuals = residuals(&columns, self.f_z[axis][cell.clone()].to_vec(), coefficients, axis);
-                for (residual, _) in residuals.into_iter().zip(&usable).filter(|(_, usable)| **usable) {
+                for (residual, _) in residuals.into_iter().zip(&usable[cell.clone()]).filter(|(_, usable)| **usable) {
                     sides[usize::from(residual > 0.0)].count(residual.abs() / limits[axis]);
                 }
             }
@@ -199,12 +192,8 @@ impl Shown {
 
     /// Median size of the residuals on an axis, the last terms having these coefficients.
     fn median_residual(&self, coefficients: &[Vector3<f64>], axis: usize) -> f64 {
-        let residuals = self.residuals(coefficients, axis).into_iter();
+        let residuals = residuals(&self.columns, self.f_z[axis].clone(), coefficients, axis).into_iter();
         median(&mut residuals.map(f64::abs).filter(|size| size.is_finite()).collect::<Vec<f64>>())
-    }
-
-    fn residuals(&self, coefficients: &[Vector3<f64>], axis: usize) -> Vec<f64> {
-        residuals(&self.columns, self.f_z[axis].clone(), coefficients, axis)
     }
 }
 

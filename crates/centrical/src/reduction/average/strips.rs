@@ -128,7 +128,8 @@ impl<'a> Strips<'a> {
             return false;
         }
         let limits = self.samples.limits(coefficients);
-        let sides = self.samples.sides(coefficients, &limits, |i| self.is_usable(i));
+        let usable: Vec<bool> = (0..self.samples.len()).map(|i| self.is_usable(i)).collect();
+        let sides = self.samples.sides(coefficients, &limits, &usable);
         self.wider = Vector3::from(sides.map(|sides| sides.into_iter().filter_map(widened).fold(1.0, f64::max)));
         self.wider.max() > 1.0
     }
