@@ -150,40 +150,49 @@ impl Rivals<'_> {
     fn price(&self, suspect: &Suspect, shifts: &DMatrix<f64>, parameter: usize) -> Result<Option<f64>, FitError> {
         let Some(u) = self.calibration.fit().standard_uncertainty(parameter) else { return Ok(None) };
         let g = shifts.row(parameter).transpose();
-        // The rest of a session determines what a rival in a part of it might hide.
-        let is_lost = if Rival::COMMON.contains(&suspect.rival) {
-            self.loses_instrument(suspect, shifts)?
-        } else {
-            suspect.seen.beyond(&g, 0.0).norm() > ROUNDING * u
+        let is_hardly_seen = suspect.seen.beyond(&g, 0.0).norm() > ROUNDING * u;
+        let is_lost = match self.study_with(suspect, shifts)? {
+            Some(study) => self.loses_instrument(&study) || is_hardly_seen && !self.loses_more(&study),
+            None => is_hardly_seen,
         };
         Ok((!is_lost).then(|| (1.0 + suspect.seen.statistic(&g) / (u * u)).sqrt()))
     }
 
-    /// Whether a parameter of the instrument that is determined without the unknowns of the rival is lost with them: at `X = 0`,
-    /// where no second-order traces pass for knowledge. Only one that moves with what is hardly seen can be lost.
-    fn loses_instrument(&self, suspect: &Suspect, shifts: &DMatrix<f64>) -> Result<bool, FitError> {
+    /// The design with the unknowns of a rival at `X = 0`, where no second-order traces pass for knowledge: of one that concerns the whole
+    /// session, and if what is hardly seen moves a parameter of the instrument.
+    fn study_with(&self, suspect: &Suspect, shifts: &DMatrix<f64>) -> Result<Option<Study>, FitError> {
         let (fit, data) = (self.calibration.fit(), self.calibration.data());
         let parameters = data.model().parameters();
-        let may_be_lost = |&j: &usize| {
+        let moves = |j: usize| {
             let beyond = suspect.seen.beyond(&shifts.row(j).transpose(), SECOND_ORDER.powi(2)).norm();
             fit.standard_uncertainty(j).is_some_and(|u| beyond > ROUNDING * u)
         };
-        let instrument = (0..parameters.len()).filter(|&j| parameters[j].is_of_instrument());
-        let doubtful: Vec<usize> = instrument.filter(may_be_lost).collect();
-        if doubtful.is_empty() {
-            return Ok(false);
+        let mut instrument = (0..parameters.len()).filter(|&j| parameters[j].is_of_instrument());
+        if !Rival::COMMON.contains(&suspect.rival) || !instrument.any(moves) {
+            return Ok(None);
         }
         let richer = data.model().with_rivals(&[suspect.rival]);
         // A plateau run again adds weight, which changes no rank.
         let (alike, mut kinds) = (richer.alike(), BTreeSet::new());
         let first = data.observations().iter().filter(|observation| kinds.insert(alike[observation.set_point]));
         let weights = first.map(Weight::from).collect();
-        let study = Study::at_zero(richer, weights)?;
+        Study::at_zero(richer, weights).map(Some)
+    }
+
+    /// Whether a richer design loses a parameter of the instrument that is determined now.
+    fn loses_instrument(&self, richer: &Study) -> bool {
+        let (fit, parameters) = (self.calibration.fit(), self.calibration.data().model().parameters());
         let is_lost = |j: usize| {
-            let there = study.model().parameters().find(&parameters[j].name);
-            there.is_none_or(|j| !study.observability().is_estimable(j))
+            let there = richer.model().parameters().find(&parameters[j].name);
+            there.is_none_or(|j| !richer.observability().is_estimable(j))
         };
-        Ok(doubtful.into_iter().any(is_lost))
+        let mut instrument = (0..parameters.len()).filter(|&j| parameters[j].is_of_instrument());
+        instrument.any(|j| fit.standard_uncertainty(j).is_some() && is_lost(j))
+    }
+
+    /// Whether a richer design loses more combinations than this one: a fit holds them, and what is hardly seen is among them.
+    fn loses_more(&self, richer: &Study) -> bool {
+        richer.observability().lost() > self.calibration.fit().observability().lost()
     }
 
     /// The estimable parameter of the instrument that moves most, and by how many standard uncertainties.
