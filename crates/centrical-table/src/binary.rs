@@ -85,6 +85,11 @@ impl BinaryFormat {
 
     /// Reads `fields` of a source of this format, which can hold `most` rows.
     pub fn open(self, source: &Source, fields: Vec<Field>, most: u64) -> Result<ColumnReader, Error> {
+        if let Some(field) = fields.iter().find(|field| field.name.date_and_column().0.is_some()) {
+            let place = Place::Column(field.name.to_string());
+            let expected = "one column of timestamps, or of seconds";
+            return Err(Error::content(source.name(), place, "a date and a time beside text alone", expected));
+        }
         let columns = match self {
             Self::Parquet => {
                 let parts = parquet::parts(source, &fields)?;

@@ -12,6 +12,8 @@ pub enum ColumnName {
     Name(String),
     /// By its number from 1, for files without a header.
     Number(usize),
+    /// Two columns of a text that make one stamp: of the date, and of the time of the day.
+    DateAndTime(Box<[Self; 2]>),
     /// It is not in the file: the number of the row, from 0.
     Row,
 }
@@ -80,8 +82,25 @@ impl fmt::Display for ColumnName {
         match self {
             Self::Name(name) => f.write_str(name),
             Self::Number(number) => write!(f, "column {number}"),
+            Self::DateAndTime(parts) => write!(f, "{} and {}", parts[0], parts[1]),
             Self::Row => f.write_str("row"),
         }
+    }
+}
+
+impl ColumnName {
+    /// The column of dates, if there is one, and the column itself or that of the times of the day.
+    pub(crate) fn date_and_column(&self) -> (Option<&Self>, &Self) {
+        match self {
+            Self::DateAndTime(parts) => (Some(&parts[0]), &parts[1]),
+            own => (None, own),
+        }
+    }
+
+    /// Whether it is found by a name in the header.
+    pub(crate) fn is_named(&self) -> bool {
+        let (date, own) = self.date_and_column();
+        [date, Some(own)].into_iter().flatten().any(|column| matches!(column, Self::Name(_)))
     }
 }
 
@@ -104,12 +123,20 @@ pub(crate) struct Before {
 pub(crate) struct Backwards {
     pub field: usize,
     pub found: String,
+    /// Whether a time of the day would run so over midnight.
+    pub may_be_midnight: bool,
 }
 
 impl Backwards {
     /// A value of a field that is below the one before it.
     pub fn new(field: usize, value: f64, before: f64) -> Self {
-        Self { field, found: format!("{value} after {before}") }
+        const DAY: f64 = 86_400.0;
+        let is_of_day = (0.0..DAY).contains(&value) && (0.0..DAY).contains(&before);
+        Self {
+            field,
+            found: format!("{value} after {before}"),
+            may_be_midnight: is_of_day && before - value > DAY / 2.0,
+        }
     }
 }
 
@@ -180,3 +207,7 @@ pub(crate) fn runs_backwards(values: &[f64]) -> bool {
 
 /// What an ascending column should be.
 pub(crate) const ASCENDING: &str = "a time that does not run backwards";
+
+/// The same of a time of the day that ran over midnight.
+pub(crate) const ASCENDING_OVER_MIDNIGHT: &str = "a time that does not run backwards: after midnight a time of the day needs a \
+                                                  date, as in time = { date = \"Date\", column = \"Time\" } under [columns]";

@@ -6,4 +6,4 @@ mod written;
 pub use self::stamps::Stamps;
 pub(crate) use self::stamps::{TickForm, TickUnit};
 pub use self::written::StampKind;
-pub(crate) use self::written::{kind, seconds};
+pub(crate) use self::written::{dated_seconds, joined, kind, seconds};

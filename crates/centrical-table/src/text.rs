@@ -126,7 +126,8 @@ impl TextReader {
             let mut bytes = 0;
             for (piece, rows) in pieces.iter_mut().zip(&*rows) {
                 if let Some(backwards) = before.next(rows, fields) {
-                    return Err(located(file, *line + piece.first_row, Fault::of(backwards, fields)));
+                    let stamp = piece.stamp_kind(piece.first_row, layout);
+                    return Err(located(file, *line + piece.first_row, Fault::of(backwards, fields, stamp)));
                 }
                 if let Some((at, fault)) = piece.fault.take() {
                     return Err(located(file, *line + at, fault));

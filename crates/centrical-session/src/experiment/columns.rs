@@ -4,7 +4,7 @@ use std::path::Path;
 
 use centrical_table::{ColumnName, TableLines};
 
-use super::form::{ColumnEntry, ColumnTable, ColumnsTable, UnitTable};
+use super::form::{ColumnEntry, ColumnLabel, ColumnTable, ColumnsTable, UnitTable};
 use super::toml_path::TomlPath;
 use super::unit;
 use crate::error::{Error, quoted};
@@ -34,7 +34,10 @@ pub(crate) fn columns(file: &Path, table: &ColumnsTable, unit: &UnitTable) -> Re
     columns.pulse.clone_from(&columns.telemetry_time);
     if let Some(ColumnEntry(entry)) = &table.pulse {
         columns.pulse = Columns::default().time;
-        set(&at, "pulse", &mut columns.pulse, entry, Dimension::Time)?;
+        match dated(&at, "pulse", entry)? {
+            Some(name) => columns.pulse.name = name,
+            None => set(&at, "pulse", &mut columns.pulse, entry, Dimension::Time)?,
+        }
     }
     if let Some(ColumnEntry(entry)) = &table.speed {
         if let (Some(_), Some(_)) = (&table.speed_unit, &entry.unit) {
@@ -92,6 +95,9 @@ fn set(at: &TomlPath, key: &str, column: &mut Column, entry: &ColumnTable, dimen
     if entry.rate.is_some() {
         return Err(at.unexpected(key, "a rate", "no rate (it belongs to a column of time that counts samples)"));
     }
+    if entry.date.is_some() {
+        return Err(at.unexpected(key, "a date", "no date (it belongs to a column of time)"));
+    }
     let label = entry.column.as_ref();
     column.name =
         label.ok_or_else(|| at.unexpected(key, "no column", "column = its name, or number from 1"))?.0.clone();
@@ -101,8 +107,12 @@ fn set(at: &TomlPath, key: &str, column: &mut Column, entry: &ColumnTable, dimen
     }
 }
 
-/// The column of time: in a unit of time, a count of samples at a rate, or no column at all but a rate.
+/// The column of time: in a unit of time, times of the day beside dates, a count of samples at a rate, or no column at all but a rate.
 fn set_time(at: &TomlPath, key: &str, column: &mut Column, entry: &ColumnTable) -> Result<(), Error> {
+    if let Some(name) = dated(at, key, entry)? {
+        column.name = name;
+        return Ok(());
+    }
     match (&entry.rate, &entry.unit) {
         (None, _) => return set(at, key, column, entry, Dimension::Time),
         (Some(_), Some(_)) => return Err(at.unexpected(key, "a rate and a unit", "one of them")),
@@ -111,6 +121,17 @@ fn set_time(at: &TomlPath, key: &str, column: &mut Column, entry: &ColumnTable) 
     "samples".clone_into(&mut column.unit);
     column.name = entry.column.as_ref().map_or(ColumnName::Row, |label| label.0.clone());
     Ok(())
+}
+
+/// The columns of dates and of times of the day, if they are two.
+fn dated(at: &TomlPath, key: &str, entry: &ColumnTable) -> Result<Option<ColumnName>, Error> {
+    let Some(ColumnLabel(date)) = &entry.date else { return Ok(None) };
+    if entry.rate.is_some() || entry.unit.is_some() {
+        return Err(at.unexpected(key, "a date beside a rate or a unit", "one of them"));
+    }
+    let expected = "column = that of the times of the day";
+    let ColumnLabel(time) = entry.column.as_ref().ok_or_else(|| at.unexpected(key, "a date alone", expected))?;
+    Ok(Some(ColumnName::DateAndTime(Box::new([date.clone(), time.clone()]))))
 }
 
 /// Samples per second.

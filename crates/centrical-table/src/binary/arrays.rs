@@ -141,7 +141,7 @@ fn find<'a>(file: &Path, arrays: &'a [Array], field: &Field) -> Result<(&'a Arra
                 .map_or_else(|| wrong(format!("{} columns", array.columns.len()), "that many columns"), Ok),
             _ => wrong(contents(arrays), "one array, or [columns] by name"),
         },
-        ColumnName::Row => wrong("no such column".to_owned(), "a column by name or number"),
+        ColumnName::Row | ColumnName::DateAndTime(_) => wrong("no such column".to_owned(), "a column by name or number"),
     }
 }
 

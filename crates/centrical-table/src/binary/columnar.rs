@@ -34,7 +34,7 @@ pub(super) fn place_of(file: &Path, names: &[String], field: &Field) -> Result<u
     let mut places = match &field.name {
         ColumnName::Name(name) => (0..names.len()).filter(|i| names[*i] == *name).collect(),
         ColumnName::Number(number) => vec![number.wrapping_sub(1)],
-        ColumnName::Row => Vec::new(),
+        ColumnName::Row | ColumnName::DateAndTime(_) => Vec::new(),
     };
     let (Some(place), None) = (places.pop().filter(|i| *i < names.len()), places.pop()) else {
         let found = format!("columns {}", quoted(names.join(", ").as_bytes()));

@@ -138,7 +138,9 @@ fn find(file: &Path, channels: &[Channel], field: &Field) -> Result<Option<usize
                 (None, _) => wrong(list(), "a channel of this name"),
             }
         }
-        ColumnName::Row => wrong("no such channel".to_owned(), "a channel by name or number"),
+        ColumnName::Row | ColumnName::DateAndTime(_) => {
+            wrong("no such channel".to_owned(), "a channel by name or number")
+        }
     }
 }
 

@@ -37,11 +37,23 @@ pub(crate) fn seconds(text: &[u8]) -> Option<f64> {
     parsed(text).map(|stamp| stamp.since.as_secs_f64())
 }
 
+/// Seconds since 1970 of a stamp with a date, as [`joined`] makes it.
+pub(crate) fn dated_seconds(text: &[u8]) -> Option<f64> {
+    parsed(text).filter(|stamp| stamp.kind != StampKind::TimeOfDay).map(|stamp| stamp.since.as_secs_f64())
+}
+
 /// Nanoseconds since 1970 of a stamp with a date, and whether it gives an offset from UTC; nothing for a time of the day, and outside
 /// the years 1678 to 2261, which 64 bits count.
 pub(crate) fn nanoseconds(text: &[u8]) -> Option<(i64, bool)> {
     let stamp = parsed(text).filter(|stamp| stamp.kind != StampKind::TimeOfDay)?;
     Some((i64::try_from(stamp.since.as_nanos()).ok()?, stamp.has_offset))
+}
+
+/// The stamp of a date and a time of the day. The date may be a stamp at midnight, as workbooks have it.
+pub(crate) fn joined(date: &[u8], time: &[u8]) -> Vec<u8> {
+    const MIDNIGHT: [&[u8]; 2] = [b"T00:00:00.000", b" 00:00:00"];
+    let day = MIDNIGHT.iter().find_map(|end| date.strip_suffix(*end)).unwrap_or(date);
+    [day, time].join(&b' ')
 }
 
 /// How a stamp is written.
@@ -83,11 +95,11 @@ fn since_1970(stamp: Timestamp) -> SignedDuration {
     stamp.duration_since(Timestamp::UNIX_EPOCH)
 }
 
-/// A date with points or slashes, a blank or `T`, and a time. With slashes the year comes first: day and month in `05/10/2026` are
-/// ambiguous.
+/// A date with points, slashes or dashes, a blank or `T`, and a time. With slashes and dashes the year comes first: day and month in
+/// `05/10/2026` are ambiguous.
 fn with_date(text: &str) -> Option<Parsed> {
     let (date, time) = text.split_once([' ', 'T'])?;
-    let mark = if date.contains('.') { '.' } else { '/' };
+    let mark = ['.', '/', '-'].into_iter().find(|mark| date.contains(*mark))?;
     let mut parts = date.split(mark);
     let [a, b, c] = [parts.next()?, parts.next()?, parts.next()?];
     if parts.next().is_some() {
@@ -146,6 +158,7 @@ mod tests {
             ("5.10.2026 10:00:00.25", 1_791_194_400.25),
             ("2026/10/05 10:00:00,250000000000001", 1_791_194_400.25),
             ("2026.10.05 10:00:00", 1_791_194_400.0),
+            ("2026-10-05 9:10:00,25", 1_791_191_400.25),
             ("10:00:00,25", 36_000.25),
         ] {
             assert_eq!(seconds(text.as_bytes()), Some(expected), "{text}");
@@ -157,6 +170,7 @@ mod tests {
             "10:00",
             "2026-10-05T10:00:00+3",
             "05/10/2026 10:00:00",
+            "05-10-2026 10:00:00",
             "31.02.2026 10:00:00",
             "05.10.26 10:00:00",
             "05.10.2026",
@@ -166,6 +180,19 @@ mod tests {
             "1:2:3:4",
         ] {
             assert_eq!(seconds(text.as_bytes()), None, "{text}");
+        }
+    }
+
+    #[test]
+    fn a_date_and_a_time_make_a_stamp() {
+        for date in ["2026-10-05", "05.10.2026", "2026/10/05", "2026-10-05T00:00:00.000", "2026-10-05 00:00:00"] {
+            for time in ["10:00:00.250", "10:00:00,250"] {
+                let stamp = joined(date.as_bytes(), time.as_bytes());
+                assert_eq!(dated_seconds(&stamp), Some(1_791_194_400.25), "{date} {time}");
+            }
+        }
+        for (date, time) in [("05/10/2026", "10:00:00"), ("", "10:00:00"), ("2026-10-05", "1.5"), ("10:00:00", "")] {
+            assert_eq!(dated_seconds(&joined(date.as_bytes(), time.as_bytes())), None, "{date} {time}");
         }
     }
 

@@ -5,8 +5,9 @@ use std::borrow::Cow;
 use memchr::memchr;
 
 use super::lines::TABLE;
-use crate::column::{ASCENDING, Backwards, Field};
+use crate::column::{ASCENDING, ASCENDING_OVER_MIDNIGHT, Backwards, Field};
 use crate::error::quoted;
+use crate::stamp::StampKind;
 
 /// What stands wrong in a line.
 pub(super) struct Fault {
@@ -21,9 +22,11 @@ impl Fault {
         Self { column: None, found, expected: TABLE.to_owned() }
     }
 
-    /// A value that is below the one before it.
-    pub fn of(Backwards { field, found }: Backwards, fields: &[Field]) -> Self {
-        fields[field].fault(found, ASCENDING)
+    /// A value that is below the one before it, in a row whose first field is that stamp.
+    pub fn of(backwards: Backwards, fields: &[Field], stamp: Option<StampKind>) -> Self {
+        let Backwards { field, found, may_be_midnight } = backwards;
+        let is_over_midnight = field == 0 && may_be_midnight && stamp == Some(StampKind::TimeOfDay);
+        fields[field].fault(found, if is_over_midnight { ASCENDING_OVER_MIDNIGHT } else { ASCENDING })
     }
 }
 

@@ -3,8 +3,9 @@
 use super::encoding::TextEncoding;
 use super::fields::{Delimiter, number};
 use super::lines::{Line, is_data, numbered};
-use super::shape::Shape;
+use super::shape::{Shape, is_number};
 use super::unit_words::{name_and_unit, unit_of_word};
+use crate::column::is_missing;
 use crate::stamp::{self, StampKind};
 
 /// What a table as text looks like, from its first lines.
@@ -33,6 +34,8 @@ pub struct TextForm {
     pub first_row: Vec<String>,
     /// The first column of stamps, counted from 0, and their kind.
     pub stamps: Option<StampColumn>,
+    /// The first column of dates, counted from 0, where the stamps are times of the day.
+    pub dates: Option<usize>,
 }
 
 /// The sign before the decimals of numbers.
@@ -77,6 +80,11 @@ impl TextForm {
         let above = shape.header.unwrap_or(shape.first_row);
         let stamp =
             |(column, text): (usize, &String)| Some(StampColumn { column, kind: stamp::kind(text.as_bytes())? });
+        let words = || first_row.iter().enumerate().filter(|(_, text)| number(text.as_bytes()).is_none());
+        let times = words().filter_map(stamp).find(|stamps| stamps.kind == StampKind::TimeOfDay);
+        let is_date = |text: &str| stamp::dated_seconds(&stamp::joined(text.as_bytes(), b"00:00:00")).is_some();
+        let dates = times.and_then(|_| Some(words().find(|(_, text)| is_date(text))?.0));
+        let stamps = times.filter(|_| dates.is_some()).or_else(|| words().find_map(stamp));
         Some(Self {
             encoding,
             delimiter: match shape.delimiter {
@@ -90,9 +98,17 @@ impl TextForm {
             units_line: shape.units.map(line),
             units,
             first_row_line: line(shape.first_row),
-            stamps: first_row.iter().enumerate().filter(|(_, text)| number(text.as_bytes()).is_none()).find_map(stamp),
+            stamps,
+            dates,
             first_row,
         })
+    }
+}
+
+impl TextForm {
+    /// Whether the first row has a word in that column, counted from 0: neither a number, nor a stamp, nor a value that is missing.
+    pub fn has_word(&self, column: usize) -> bool {
+        self.first_row.get(column).is_some_and(|text| !is_number(text.as_bytes()) && !is_missing(text))
     }
 }
 

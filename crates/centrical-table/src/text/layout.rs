@@ -17,8 +17,20 @@ use crate::stamp;
 #[derive(Debug, Clone)]
 pub(super) struct Layout {
     delimiter: Delimiter,
+    /// The same where rows may be of bare numbers.
+    of_numbers: Option<u8>,
     /// For every column of the file, the wanted field that it is.
     wanted: Vec<Option<usize>>,
+    date: Option<DateColumn>,
+}
+
+/// A column of dates, to which another one has the times of the day.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct DateColumn {
+    /// Which column of the file it is, from 0.
+    pub place: usize,
+    /// The field that the times of the day are.
+    pub field: usize,
 }
 
 impl Field {
@@ -35,9 +47,13 @@ impl Field {
 }
 
 impl Layout {
-    /// Of every column of the file, divided so, the field that it is.
-    pub fn new(delimiter: Delimiter, wanted: Vec<Option<usize>>) -> Self {
-        Self { delimiter, wanted }
+    /// Of every column of the file, divided so, the field that it is; beside one of them may be dates.
+    pub fn new(delimiter: Delimiter, wanted: Vec<Option<usize>>, date: Option<DateColumn>) -> Self {
+        let of_numbers = match delimiter {
+            Delimiter::Byte(byte) if date.is_none() => Some(byte),
+            _ => None,
+        };
+        Self { delimiter, of_numbers, wanted, date }
     }
 
     /// All fields of a line.
@@ -69,7 +85,8 @@ impl Layout {
 
     /// Has `columns` fields from now on, if none is lost that is wanted and others may be added.
     fn resize(&mut self, columns: usize, may_grow: bool) {
-        let needed = self.wanted.iter().rposition(Option::is_some).map_or(0, |last| last + 1);
+        let last = self.wanted.iter().rposition(Option::is_some).max(self.date.map(|date| date.place));
+        let needed = last.map_or(0, |last| last + 1);
         if (needed..=self.wanted.len()).contains(&columns) || may_grow && columns > self.wanted.len() {
             self.wanted.resize(columns, None);
         }
@@ -115,12 +132,9 @@ impl Layout {
         Ok(())
     }
 
-    /// What divides the fields, if it is one byte.
+    /// What divides the fields, if it is one byte and rows may be of bare numbers.
     pub fn delimiter(&self) -> Option<u8> {
-        match self.delimiter {
-            Delimiter::Byte(delimiter) => Some(delimiter),
-            Delimiter::Blanks => None,
-        }
+        self.of_numbers
     }
 
     /// For every column of the file, the wanted field that it is.
@@ -160,7 +174,10 @@ impl Layout {
     /// The first field of a line, if it is a stamp.
     pub fn stamp<'a>(&self, line: &'a [u8]) -> Option<Cow<'a, [u8]>> {
         let text = self.wanted_texts(line)?.into_iter().next()?;
-        number(&text).is_none().then_some(text)
+        match self.date.filter(|date| date.field == 0) {
+            Some(date) => Some(Cow::Owned(stamp::joined(self.texts(line).ok()?.get(date.place)?, &text))),
+            None => number(&text).is_none().then_some(text),
+        }
     }
 
     /// The row of any line: quotes, blanks, decimal commas, empty fields.
@@ -172,7 +189,11 @@ impl Layout {
             let field;
             (field, rest) = self.delimiter.split(text)?;
             if let Some(k) = wanted {
-                row[*k] = fields[*k].value(field).map_err(|fault| self.header_again(line, fields).unwrap_or(fault))?;
+                let value = match self.date.filter(|date| date.field == *k) {
+                    Some(date) => self.dated_value(date, field, line, &fields[*k]),
+                    None => fields[*k].value(field),
+                };
+                row[*k] = value.map_err(|fault| self.header_again(line, fields).unwrap_or(fault))?;
             }
         }
         // Some loggers end every row, but not the header, with a delimiter.
@@ -182,10 +203,19 @@ impl Layout {
         }
     }
 
+    /// The seconds of a time of the day on the date in the same line.
+    fn dated_value(&self, date: DateColumn, time: &[u8], line: &[u8], field: &Field) -> Result<f64, Fault> {
+        let texts = self.texts(line)?;
+        let date = texts.get(date.place).map_or(&b""[..], |text| text);
+        let stamp = stamp::joined(date, &unquoted(time));
+        let expected = "a date and a time of the day, such as 2026-10-05 and 10:00:00.25";
+        stamp::dated_seconds(&stamp).ok_or_else(|| field.fault(quoted(&stamp), expected))
+    }
+
     /// What is wrong with a line that has the names of the columns in place of their numbers, as where files were put together.
     fn header_again(&self, line: &[u8], fields: &[Field]) -> Option<Fault> {
         let texts = self.wanted_texts(line.strip_prefix("\u{feff}".as_bytes()).unwrap_or(line))?;
-        let is_name = |(field, text): (&Field, &Cow<[u8]>)| match &field.name {
+        let is_name = |(field, text): (&Field, &Cow<[u8]>)| match field.name.date_and_column().1 {
             ColumnName::Name(name) => name.as_bytes() == &*unquoted(text),
             _ => false,
         };

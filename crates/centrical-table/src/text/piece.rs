@@ -8,7 +8,7 @@ use super::lines::{self, Text, is_data, numbered, split_line};
 use super::number::{self, Batch, ROWS};
 use super::separators::Separators;
 use crate::column::{Backwards, Field, Rows, runs_backwards};
-use crate::stamp::Stamps;
+use crate::stamp::{self, StampKind, Stamps};
 
 /// A piece on its way from the file to the rows.
 #[derive(Default)]
@@ -47,7 +47,7 @@ impl Piece {
         }
         self.fault = self.read_batches(text, layout, fields, rows).err().or(self.fault.take());
         self.text = whole;
-        self.check_times(skipped, fields, rows);
+        self.check_times(layout, skipped, fields, rows);
     }
 
     /// Reads rows of bare numbers, many at a time, and others one by one, up to the first fault.
@@ -194,15 +194,23 @@ impl Piece {
     }
 
     /// Sees that what should ascend does, row after row.
-    fn check_times(&mut self, skipped: u64, fields: &[Field], rows: &Rows) {
+    fn check_times(&mut self, layout: &Layout, skipped: u64, fields: &[Field], rows: &Rows) {
         for (k, column) in rows.iter().enumerate().filter(|(k, _)| fields[*k].rule.ascends()) {
             if runs_backwards(column)
                 && let Some(row) = column.windows(2).position(|pair| pair[1] < pair[0])
             {
-                let fault = Fault::of(Backwards::new(k, column[row + 1], column[row]), fields);
-                self.fault = Some((self.line_of(row + 1, skipped), fault));
+                let backwards = Backwards::new(k, column[row + 1], column[row]);
+                let line = self.line_of(row + 1, skipped);
+                self.fault = Some((line, Fault::of(backwards, fields, self.stamp_kind(line, layout))));
             }
         }
+    }
+
+    /// How the first field of a line is written, if it is a stamp.
+    #[cold]
+    pub fn stamp_kind(&self, line: u64, layout: &Layout) -> Option<StampKind> {
+        let (_, text) = numbered(&self.text).find(|(number, _)| *number == line)?;
+        stamp::kind(&layout.stamp(text)?)
     }
 
     /// The line of a row, both counted from 0.

@@ -8,7 +8,7 @@ use std::borrow::Cow;
 
 use super::encoding::TextEncoding;
 use super::fields::{Delimiter, Fault, number};
-use super::layout::Layout;
+use super::layout::{DateColumn, Layout};
 use super::lines::{Line, is_data, numbered};
 use super::shape::{Shape, after_preamble, is_number};
 use super::unit_words::name_and_unit;
@@ -118,7 +118,7 @@ impl Prologue {
             });
         }
         let texts: Vec<&[u8]> = lines.iter().map(|(_, line)| *line).collect();
-        if fields.iter().any(|field| matches!(field.name, ColumnName::Name(_))) {
+        if fields.iter().any(|field| field.name.is_named()) {
             return Ok(self.header(&texts, fields));
         }
         let above = after_preamble(&texts);
@@ -131,11 +131,11 @@ impl Prologue {
         let count = |line: &[u8]| {
             let Ok(names) = Delimiter::of(line).texts(line) else { return 0 };
             decodings(&names)
-                .map(|names| fields.iter().filter(|field| field.is_among(&names)).count())
+                .map(|names| fields.iter().filter(|field| field.name.is_among(&names)).count())
                 .max()
                 .unwrap_or(0)
         };
-        let wanted = fields.iter().filter(|field| matches!(field.name, ColumnName::Name(_))).count();
+        let wanted = fields.iter().filter(|field| field.name.is_named()).count();
         if let Some(header) = lines.iter().position(|line| count(line) == wanted) {
             return header;
         }
@@ -154,9 +154,9 @@ impl Prologue {
     fn first_line(&self, line: &[u8], fields: &[Field]) -> Result<FirstLine, Fault> {
         let delimiter = Delimiter::of(line);
         let names = delimiter.texts(line)?;
-        let by_name = fields.iter().any(|field| matches!(field.name, ColumnName::Name(_)));
+        let by_name = fields.iter().any(|field| field.name.is_named());
         let named =
-            |names: &[Cow<[u8]>]| decodings(names).any(|names| fields.iter().any(|field| field.is_among(&names)));
+            |names: &[Cow<[u8]>]| decodings(names).any(|names| fields.iter().any(|field| field.name.is_among(&names)));
         let is_header = named(&names) || !names.iter().any(|name| number(name).is_some());
         let of_comment = Delimiter::of(&self.comment).texts(&self.comment);
         let (names, columns) =
@@ -168,23 +168,28 @@ impl Prologue {
         let names = best_decoding(&names, fields);
         let mut wanted = vec![None; columns];
         let mut units = vec![None; fields.len()];
+        let mut date = None;
         for (k, field) in fields.iter().enumerate() {
-            let place = field.find(&names, columns)?;
-            if wanted[place].is_some() {
+            let (date_name, name) = field.name.date_and_column();
+            let place = field.find(name, &names, columns)?;
+            if let Some(name) = date_name {
+                date = Some(DateColumn { place: field.find(name, &names, columns)?, field: k });
+            }
+            if wanted[place].is_some() || date.is_some_and(|date| date.place == place) {
                 let found = format!("column {} asked for twice", place + 1);
                 return Err(field.fault(found, "a column of its own for every quantity"));
             }
             wanted[place] = Some(k);
             units[k] = names.get(place).and_then(|name| Some(name_and_unit(name)?.1));
         }
-        Ok(FirstLine { layout: Layout::new(delimiter, wanted), is_header, units })
+        Ok(FirstLine { layout: Layout::new(delimiter, wanted, date), is_header, units })
     }
 }
 
 /// Whether a line without names can be a row: the first column that is asked for, or all others, are numbers there.
 fn could_be_row(line: &[u8], fields: &[Field]) -> bool {
     let Ok(texts) = Delimiter::of(line).texts(line) else { return false };
-    let mut places = fields.iter().map(|field| match field.name {
+    let mut places = fields.iter().map(|field| match field.name.date_and_column().1 {
         ColumnName::Number(number) => texts.get(number.wrapping_sub(1)).is_some_and(|text| is_number(text)),
         _ => false,
     });
@@ -201,7 +206,7 @@ fn decodings<'a>(names: &'a [Cow<[u8]>]) -> impl Iterator<Item = Vec<Cow<'a, str
 
 /// The names in the encoding in which most of the fields are among them.
 fn best_decoding<'a>(names: &'a [Cow<[u8]>], fields: &[Field]) -> Vec<Cow<'a, str>> {
-    let found = |names: &Vec<Cow<str>>| fields.iter().filter(|field| field.is_among(names)).count();
+    let found = |names: &Vec<Cow<str>>| fields.iter().filter(|field| field.name.is_among(names)).count();
     let mut best: Option<(usize, Vec<Cow<str>>)> = None;
     for names in decodings(names) {
         let found = found(&names);
@@ -212,40 +217,44 @@ fn best_decoding<'a>(names: &'a [Cow<[u8]>], fields: &[Field]) -> Vec<Cow<'a, st
     best.map(|(_, names)| names).unwrap_or_default()
 }
 
-impl Field {
+impl ColumnName {
     /// Whether the column of this name is there.
     fn is_among(&self, names: &[Cow<str>]) -> bool {
+        if let Self::DateAndTime(parts) = self {
+            return parts.iter().all(|part| part.is_among(names));
+        }
         names.iter().any(|name| self.is(name)) || names.iter().any(|name| self.is_base_of(name))
     }
 
     fn is(&self, name: &str) -> bool {
-        matches!(&self.name, ColumnName::Name(own) if own == name)
+        matches!(self, Self::Name(own) if own == name)
     }
 
-    /// Whether a name is that of this field with a unit behind it.
+    /// Whether a name is this one with a unit behind it.
     fn is_base_of(&self, name: &str) -> bool {
         name_and_unit(name).is_some_and(|(name, _)| self.is(name))
     }
+}
 
-    /// The only place of this field among the names of the columns.
-    fn find(&self, names: &[Cow<str>], columns: usize) -> Result<usize, Fault> {
-        if let ColumnName::Number(number) = self.name {
+impl Field {
+    /// The only place of a column of this field among the names of the columns.
+    fn find(&self, column: &ColumnName, names: &[Cow<str>], columns: usize) -> Result<usize, Fault> {
+        let wrong =
+            |found: String, expected: &str| Fault { column: Some(column.to_string()), ..self.fault(found, expected) };
+        if let ColumnName::Number(number) = column {
             let found = format!("{columns} columns");
-            return number
-                .checked_sub(1)
-                .filter(|i| *i < columns)
-                .ok_or_else(|| self.fault(found, "that many columns"));
+            return number.checked_sub(1).filter(|i| *i < columns).ok_or_else(|| wrong(found, "that many columns"));
         }
         let list = || quoted(names.join(", ").as_bytes());
         let all = 0..columns.min(names.len());
-        let mut places = all.clone().filter(|i| self.is(&names[*i])).collect::<Vec<_>>();
+        let mut places = all.clone().filter(|i| column.is(&names[*i])).collect::<Vec<_>>();
         if places.is_empty() {
-            places = all.filter(|i| self.is_base_of(&names[*i])).collect();
+            places = all.filter(|i| column.is_base_of(&names[*i])).collect();
         }
         match places.as_slice() {
             [place] => Ok(*place),
-            [] => Err(self.fault(format!("columns {}", list()), "a column of this name")),
-            _ => Err(self.fault(format!("two such columns in {}", list()), "one")),
+            [] => Err(wrong(format!("columns {}", list()), "a column of this name")),
+            _ => Err(wrong(format!("two such columns in {}", list()), "one")),
         }
     }
 }

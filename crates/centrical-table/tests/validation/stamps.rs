@@ -124,3 +124,104 @@ fn timestamps_of_tdms() {
     let of_text = expected.iter().map(|text| text.parse::<jiff::Timestamp>().unwrap().as_nanosecond());
     assert!(ticks.iter().map(|ticks| i128::from(*ticks)).eq(of_text));
 }
+
+/// The seconds of the first column of a text, and its stamps; or what is wrong with it.
+fn dated(text: &str, name: ColumnName) -> Result<(Vec<f64>, Vec<String>), String> {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("m01.csv");
+    fs::write(&file, text).unwrap();
+    let field = |name: ColumnName, rule| Field { name, expected: "a number".to_owned(), rule };
+    let fields = [
+        field(name, Rule::Ascending { stamps: true }),
+        field(ColumnName::Row, Rule::Any),
+        field(ColumnName::Number(3), Rule::Any),
+    ];
+    let message = |error: centrical_table::Error| error.to_string().split_once("m01.csv, ").unwrap().1.to_owned();
+    let mut reader = TableReader::open(&file, Extent::Whole, &fields, "a record").map_err(message)?;
+    reader.keep_stamps();
+    let (mut times, mut texts) = (Vec::new(), Vec::new());
+    while reader.next_batch().map_err(message)?.is_some() {
+        for (rows, stamps) in reader.take_stamps().iter().zip(reader.batch()).map(|(stamps, rows)| (rows, stamps)) {
+            let text = |row| String::from_utf8(stamps.text(row).unwrap().into_owned()).unwrap();
+            texts.extend((0..rows[0].len()).map(text));
+            times.extend_from_slice(&rows[0]);
+        }
+    }
+    Ok((times, texts))
+}
+
+/// A column of dates and one of times of the day are one time, over midnight too.
+#[test]
+fn dates_beside_times_of_the_day() {
+    // 2026-10-05T23:59:59.75Z, by `date`.
+    const LAST: f64 = 1_791_244_799.75;
+    let name = |name: &str| ColumnName::Name(name.to_owned());
+    let both = |date: ColumnName, time: ColumnName| ColumnName::DateAndTime(Box::new([date, time]));
+    let of_names = || both(name("Date"), name("Time"));
+    for (delimiter, days, decimal) in [
+        (";", ["2026-10-05", "2026-10-06"], ","),
+        (",", ["2026/10/05", "2026/10/06"], "."),
+        ("\t", ["05.10.2026", "06.10.2026"], ","),
+        (" ", ["5.10.2026", "6.10.2026"], "."),
+    ] {
+        let rows =
+            [[days[0], "23:59:59", "75", "1"], [days[1], "00:00:00", "00", "2"], [days[1], "00:00:00", "25", "3"]];
+        let row = |[date, time, fraction, reading]: [&str; 4]| {
+            format!("{date}{delimiter}{time}{decimal}{fraction}{delimiter}{reading}{delimiter}0\n")
+        };
+        let rows: String = rows.map(row).concat();
+        let header = ["Date", "Time", "f1", "f2"].join(delimiter);
+        let (times, texts) = dated(&format!("{header}\n{rows}"), of_names()).unwrap();
+        assert_eq!(times, [LAST, LAST + 0.25, LAST + 0.5], "{delimiter}");
+        assert_eq!(texts[0], format!("{} 23:59:59{decimal}75", days[0]));
+        let numbers = both(ColumnName::Number(1), ColumnName::Number(2));
+        assert_eq!(dated(&rows, numbers).unwrap().0, times, "{delimiter}");
+    }
+    let midnight = "Date;Time;f1\n2026-10-05;23:59:59,75;1\n2026-10-06;00:00:00,25;2\n";
+    for (text, column, expected) in [
+        (
+            midnight,
+            name("Time"),
+            "line 3, Time: found 0.25 after 86399.75, expected a time that does not run backwards: after midnight a time of the day \
+             needs a date, as in time = { date = \"Date\", column = \"Time\" } under [columns]",
+        ),
+        (
+            "Date;Time;f1\n2026-10-05;10:00:01;1\n2026-10-05;10:00:00;2\n",
+            of_names(),
+            "line 3, Date and Time: found 1791194400 after 1791194401, expected a time that does not run backwards",
+        ),
+        (
+            "Date;Time;f1\n05/10/2026;10:00:01;1\n",
+            of_names(),
+            "line 2, Date and Time: found \"05/10/2026 10:00:01\", expected a date and a time of the day, such as 2026-10-05 and \
+             10:00:00.25",
+        ),
+        (
+            "Day;Time;f1\n05.10.2026;10:00:01;1\n",
+            of_names(),
+            "line 1, Date: found columns \"Day, Time, f1\", expected a column of this name",
+        ),
+        (
+            midnight,
+            both(name("Time"), name("Time")),
+            "line 1, Time and Time: found column 2 asked for twice, expected a column of its own for every quantity",
+        ),
+        (
+            "Time;f1;f2\n0.75;1;1\n0.25;2;2\n",
+            name("Time"),
+            "line 3, Time: found 0.25 after 0.75, expected a time that does not run backwards",
+        ),
+    ] {
+        assert_eq!(dated(text, column).unwrap_err(), expected);
+    }
+    let error = TableReader::open(
+        &data("stamps.parquet"),
+        Extent::Whole,
+        &[Field { name: of_names(), expected: "a time".to_owned(), rule: Rule::Ascending { stamps: true } }],
+        "a record",
+    );
+    let message = error.err().unwrap().to_string();
+    let expected =
+        "Date and Time: found a date and a time beside text alone, expected one column of timestamps, or of seconds";
+    assert!(message.ends_with(expected), "{message}");
+}

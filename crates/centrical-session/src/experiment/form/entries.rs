@@ -120,6 +120,8 @@ pub(crate) struct ColumnEntry(pub ColumnTable);
 pub(crate) struct ColumnTable {
     /// Its name, or its number from 1.
     pub column: Option<ColumnLabel>,
+    /// The column of dates, where this one has times of the day.
+    pub date: Option<ColumnLabel>,
     /// Unit of its numbers.
     pub unit: Option<String>,
     /// Samples per second, where the column counts samples.

@@ -31,6 +31,11 @@ impl Label {
         }
     }
 
+    /// The same with the dates of its times of the day in another column.
+    pub fn on_dates(self, dates: Self) -> Self {
+        Self { column: ColumnName::DateAndTime(Box::new([dates.column, self.column])), ..self }
+    }
+
     /// A column of a text without a header.
     pub fn numbered(index: usize) -> Self {
         let guess = Some("no header names the columns; this is their usual order");

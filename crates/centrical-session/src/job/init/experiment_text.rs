@@ -260,6 +260,7 @@ fn column(name: &ColumnName) -> String {
     match name {
         ColumnName::Name(name) => toml_text(name),
         ColumnName::Number(number) => number.to_string(),
+        ColumnName::DateAndTime(parts) => format!("{{ date = {}, column = {} }}", column(&parts[0]), column(&parts[1])),
         ColumnName::Row => "\"\"".to_owned(),
     }
 }

@@ -85,13 +85,15 @@ pub(super) fn groups(inputs: &[PathBuf]) -> Result<(Vec<Group>, Vec<Unused>), Er
 }
 
 impl FileColumns {
-    /// Columns that have no names, in their usual order.
-    fn take_by_number(&mut self, count: usize) {
-        let numbered = Label::numbered;
-        match count {
-            2 => (self.time, self.speed) = (Some(numbered(0)), Some(numbered(1))),
-            3 => self.readings = (0..3).map(numbered).collect(),
-            4.. => (self.time, self.readings) = (Some(numbered(0)), (1..4).map(numbered).collect()),
+    /// Columns that have no names, of these numbers from 0, in their usual order; the time may be known.
+    fn take_by_number(&mut self, numbers: &[usize]) {
+        let mut labels = numbers.iter().copied().map(Label::numbered);
+        if self.time.is_none() && matches!(labels.len(), 2 | 4..) {
+            self.time = labels.next();
+        }
+        match labels.len() {
+            1 if self.time.is_some() => self.speed = labels.next(),
+            3.. => self.readings = labels.take(3).collect(),
             _ => {}
         }
     }
@@ -177,14 +179,24 @@ fn columns_of(path: PathBuf) -> Result<Result<FileColumns, Unused>, Error> {
 fn of_text(path: PathBuf, form: TextForm) -> FileColumns {
     let unit = |index: usize| form.units.get(index).copied().flatten();
     let mut file = FileColumns { path, ..FileColumns::default() };
-    if form.names.is_empty() {
-        file.take_by_number(form.first_row.len());
-    }
+    let label = |index: usize| {
+        form.names.get(index).map_or_else(|| Label::numbered(index), |name| Label::of_text(name, unit(index)))
+    };
     let stamps = form.stamps.map(|stamps| stamps.column);
-    for (index, name) in form.names.iter().enumerate() {
-        let label = Label::of_text(name, unit(index));
-        let holds = if stamps == Some(index) { What::Time } else { what(name, label.unit) };
-        file.take(label, holds);
+    let stamp = |time: usize| match form.dates {
+        Some(dates) => label(time).on_dates(label(dates)),
+        None => label(time),
+    };
+    let has_values = |index: &usize| form.dates != Some(*index) && !form.has_word(*index);
+    if form.names.is_empty() {
+        file.time = stamps.map(stamp);
+        let others = (0..form.first_row.len()).filter(has_values).filter(|index| stamps != Some(*index));
+        file.take_by_number(&others.collect::<Vec<_>>());
+    }
+    for index in (0..form.names.len()).filter(has_values) {
+        let own = label(index);
+        let holds = what(&form.names[index], own.unit);
+        if stamps == Some(index) { file.take(stamp(index), What::Time) } else { file.take(own, holds) }
     }
     file.form = Some(form);
     file.settled()
@@ -195,7 +207,7 @@ fn of_binary(path: PathBuf, columns: &[ColumnName]) -> FileColumns {
     const STAMPS: Rule = Rule::Ascending { stamps: true };
     let mut file = FileColumns { path, ..FileColumns::default() };
     let numbered = columns.iter().filter(|column| matches!(column, ColumnName::Number(_))).count();
-    file.take_by_number(numbered);
+    file.take_by_number(&(0..numbered).collect::<Vec<_>>());
     for column in columns {
         let ColumnName::Name(name) = column else { continue };
         let label = Label::of_text(name, unit_beside_name(name));
