@@ -76,7 +76,7 @@ impl BinaryFormat {
             Self::Mat => mat::names(source)?,
             Self::Tdms => named(tdms::names(source)?),
             #[cfg(feature = "hdf5")]
-            Self::Hdf5 | Self::MatHdf5 => named(hdf5::names(source)?),
+            Self::Hdf5 | Self::MatHdf5 => hdf5::names(source, self == Self::MatHdf5)?,
             #[cfg(not(feature = "hdf5"))]
             Self::Hdf5 | Self::MatHdf5 => return Err(without_hdf5(source)),
             Self::TdmsIndex => return Err(of_index(source)),

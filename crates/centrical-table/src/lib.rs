@@ -12,9 +12,9 @@
 //! | Arrow IPC: files (Feather) and streams, plain, lz4 or zstd | by name or number |
 //! | TDMS of National Instruments | channels by name or `group/name`; time of waveforms |
 //! | workbooks (`.xlsx`) with the feature `xlsx`: the first sheet, as text | by name or number |
-//! | NumPy: `.npy` matrices and records, `.npz` | by name; of a matrix by number |
-//! | MATLAB 5 (`save -v6`, `-v7`) | variables by name; of a matrix by number |
-//! | HDF5 and MATLAB 7.3, with the feature `hdf5` | datasets by name; of a matrix by number |
+//! | NumPy: `.npy` matrices and records, `.npz` | by name; of a matrix by number, or as `f(:,2)` |
+//! | MATLAB 5 (`save -v6`, `-v7`) | variables by name; of a matrix the same |
+//! | HDF5 and MATLAB 7.3, with the feature `hdf5` | datasets by name; of a matrix the same |
 //!
 //! The first bytes of a file show its format. CSV and Parquet can be written.
 //!

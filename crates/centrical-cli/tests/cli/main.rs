@@ -11,6 +11,7 @@ mod init_headers;
 mod json;
 #[cfg(unix)]
 mod killed;
+mod layouts;
 #[cfg(all(unix, feature = "serve"))]
 mod live;
 mod noise;

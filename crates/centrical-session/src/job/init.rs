@@ -17,6 +17,7 @@ mod tumbled;
 use std::path::{Path, PathBuf};
 
 use centrical::OnProgress;
+use centrical_table::shown_path;
 
 pub use self::column_names::time_column;
 pub use self::draft::{Draft, InitRequest};
@@ -33,7 +34,10 @@ pub fn init(request: &InitRequest, progress: OnProgress) -> Result<Draft, Error>
     let (groups, unused) = file_roles::groups(&request.inputs)?;
     if groups.is_empty() {
         let inputs = request.inputs.first().map_or(Path::new("."), PathBuf::as_path);
-        let expected = "a table with a time and three readings, as text, Parquet, Arrow, NumPy, MATLAB or TDMS";
+        let table = "a table with a time and three readings, as text, Parquet, Arrow, NumPy, MATLAB or TDMS";
+        let first =
+            unused.first().map_or(String::new(), |file| format!(" ({}: {})", shown_path(&file.path), file.reason));
+        let expected = format!("{table}{first}");
         return Err(Error::content(inputs, Place::Whole, "no record", expected));
     }
     let mountings = groups.into_iter().map(|group| sighting::sight(group, progress)).collect::<Result<Vec<_>, _>>()?;

@@ -19,6 +19,10 @@ const LONGEST_ROW: u64 = 1 << 16;
 /// Bytes of rows that are read at a time.
 const BUFFER: usize = 1 << 20;
 
+/// What a file without numbers should be.
+const OF_NUMBERS: &str =
+    "vectors or matrices of numbers (in MATLAB save -struct makes them of the fields of a structure)";
+
 /// An array of a file: rows of numbers in columns.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Array {
@@ -86,25 +90,50 @@ pub(super) enum ScalarKind {
 
 /// The wanted columns of arrays, in the order of the fields.
 ///
-/// A name is that of an array of one column, or of a column of an array; a number counts the columns of the only
-/// array.
+/// A name is that of an array of one column, or of a column of an array ([`name_in_matrix`] where it has none); a number
+/// counts the columns of the only array.
 pub(super) fn columns(source: &Source, arrays: &[Array], fields: &[Field]) -> Result<Vec<Column>, Error> {
     fields.iter().map(|field| column(source, find(source.name(), arrays, field)?, field)).collect()
 }
 
-/// The columns of arrays as a field asks for them: by name, those of a single matrix by number.
-pub(super) fn names(arrays: &[Array]) -> Vec<ColumnName> {
+/// The columns of arrays as a field asks for them: by name, those of a single matrix by number. A single number beside longer
+/// arrays, such as a sampling rate, is no column.
+pub(super) fn names(source: &Source, arrays: &[Array]) -> Result<Vec<ColumnName>, Error> {
+    let of_numbers = arrays.iter().filter(|array| array.has_numbers()).count();
+    if of_numbers == 0 {
+        return Err(Error::content(source.name(), Place::Whole, contents(arrays), OF_NUMBERS));
+    }
     let of_array = |array: &Array| -> Vec<ColumnName> {
         match array.columns.as_slice() {
             [column] if column.name.is_empty() && !array.name.is_empty() => vec![ColumnName::Name(array.name.clone())],
-            columns if columns.iter().all(|column| column.name.is_empty()) => match arrays {
-                [_] => (1..=columns.len()).map(ColumnName::Number).collect(),
-                _ => Vec::new(),
+            columns if columns.iter().all(|column| column.name.is_empty()) => match of_numbers {
+                1 => (1..=columns.len()).map(ColumnName::Number).collect(),
+                _ => column_names(&array.name, columns.len()),
             },
             columns => columns.iter().map(|column| ColumnName::Name(column.name.clone())).collect(),
         }
     };
-    arrays.iter().flat_map(of_array).collect()
+    let has_rows = arrays.iter().any(|array| array.rows > 1);
+    Ok(arrays.iter().filter(|array| array.rows > 1 || !has_rows).flat_map(of_array).collect())
+}
+
+/// The names of the columns of a matrix, unless it is of more columns than a record or telemetry has.
+pub(super) fn column_names(matrix: &str, columns: usize) -> Vec<ColumnName> {
+    const MOST: usize = 1000;
+    let columns = if columns > MOST { 0 } else { columns };
+    (1..=columns).map(|number| ColumnName::Name(name_in_matrix(matrix, number))).collect()
+}
+
+/// The name of a column of a matrix, as MATLAB writes it: `f(:,2)`, from 1.
+fn name_in_matrix(matrix: &str, number: usize) -> String {
+    format!("{matrix}(:,{number})")
+}
+
+/// The matrix, and the number of the column in it, of such a name; blanks between its signs do not count.
+pub(super) fn matrix_of(name: &str) -> Option<(&str, usize)> {
+    let (matrix, place) = name.trim_end().strip_suffix(')')?.rsplit_once('(')?;
+    let (all, number) = place.split_once(',')?;
+    (all.trim() == ":").then_some((matrix.trim_end(), number.trim().parse().ok()?))
 }
 
 /// The array and the column in it that a field asks for.
@@ -113,46 +142,56 @@ fn find<'a>(file: &Path, arrays: &'a [Array], field: &Field) -> Result<(&'a Arra
         Err(Error::content(file, Place::Column(field.name.to_string()), found, expected))
     };
     let half = || wrong("numbers of 16 bits (float16)".to_owned(), "numbers of 32 or 64 bits");
-    let all = || arrays.iter().flat_map(|array| array.columns.iter().map(move |column| (array, column)));
+    let of_numbers: Vec<&Array> = arrays.iter().filter(|array| array.has_numbers()).collect();
     match &field.name {
         ColumnName::Name(name) => {
-            let is = |(array, column): &(&Array, &ArrayColumn)| {
-                column.name == *name || (array.name == *name && array.columns.len() == 1)
+            let in_matrix = matrix_of(name);
+            let places = |array: &'a Array| {
+                let is_whole = array.name == *name && array.columns.len() == 1;
+                array.columns.iter().zip(1..).filter_map(move |(column, number)| {
+                    let is_in_matrix = column.name.is_empty() && in_matrix == Some((&*array.name, number));
+                    (is_whole || column.name == *name || is_in_matrix).then_some((array, column))
+                })
             };
-            let mut places = all().filter(is);
+            let mut places = arrays.iter().flat_map(places);
             let is_half = |array: &Array| {
-                array
-                    .halves
-                    .iter()
-                    .any(|half| half == name || half.is_empty() && (array.name == *name || array.name.is_empty()))
+                let names = [&**name, in_matrix.map_or("", |(matrix, _)| matrix), ""];
+                let is_asked = names.contains(&&*array.name);
+                array.halves.iter().any(|half| half == name || half.is_empty() && is_asked)
             };
             match (places.next(), places.next()) {
                 (Some(place), None) => Ok(place),
                 (None, _) if arrays.iter().any(is_half) => half(),
+                (None, _) if of_numbers.is_empty() => wrong(contents(arrays), OF_NUMBERS),
+                (None, _) if of_numbers.len() > 1 => wrong(contents(arrays), "a column of this name"),
                 (None, _) => wrong(contents(arrays), "a column of this name (for a matrix give [columns] by number)"),
                 _ => wrong(format!("two such columns in {}", contents(arrays)), "one"),
             }
         }
-        ColumnName::Number(number) => match arrays {
+        ColumnName::Number(number) => match of_numbers.as_slice() {
             [array] if array.columns.is_empty() && !array.halves.is_empty() => half(),
             [array] => number
                 .checked_sub(1)
-                .and_then(|i| Some((array, array.columns.get(i)?)))
+                .and_then(|i| Some((*array, array.columns.get(i)?)))
                 .map_or_else(|| wrong(format!("{} columns", array.columns.len()), "that many columns"), Ok),
             _ => wrong(contents(arrays), "one array, or [columns] by name"),
         },
-        ColumnName::Row | ColumnName::DateAndTime(_) => wrong("no such column".to_owned(), "a column by name or number"),
+        ColumnName::Row | ColumnName::DateAndTime(_) => {
+            wrong("no such column".to_owned(), "a column by name or number")
+        }
     }
 }
 
 /// The contents of the file, for messages.
 fn contents(arrays: &[Array]) -> String {
+    let of_numbers = arrays.iter().filter(|array| array.has_numbers()).count();
     let named = |array: &Array| match array.columns.as_slice() {
         [] => format!("{} (no numbers)", array.name),
         [column] if column.name.is_empty() => array.name.clone(),
-        columns if columns.iter().all(|c| c.name.is_empty()) => {
-            format!("{} ({} x {})", array.name, array.rows, columns.len())
-        }
+        columns if columns.iter().all(|c| c.name.is_empty()) => match of_numbers {
+            1 => format!("{} ({} x {})", array.name, array.rows, columns.len()),
+            _ => [1, columns.len()].map(|n| name_in_matrix(&array.name, n)).join(" to "),
+        },
         columns => columns.iter().map(|c| c.name.as_str()).collect::<Vec<_>>().join(", "),
     };
     format!("columns {}", quoted(arrays.iter().map(named).collect::<Vec<_>>().join(", ").trim().as_bytes()))
@@ -234,6 +273,13 @@ fn next_bytes(
     })
 }
 
+impl Array {
+    /// Whether it has columns, be they of numbers that are not read.
+    fn has_numbers(&self) -> bool {
+        !self.columns.is_empty() || !self.halves.is_empty()
+    }
+}
+
 impl Packing {
     /// How many bytes are stated to be packed.
     fn unpacked(self) -> Option<u64> {
@@ -300,5 +346,44 @@ impl Scalar {
             ScalarKind::Signed => ((bits << unused).cast_signed() >> unused) as f64,
             ScalarKind::Unsigned => bits as f64,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn columns_of_a_matrix_have_names() {
+        for name in ["f(:,2)", "f(:, 2)", "f (:,2) "] {
+            assert_eq!(matrix_of(name), Some(("f", 2)), "{name}");
+        }
+        for name in ["f", "f(2)", "f(1,2)", "f(:,x)", "f(:,2", "acc [g]"] {
+            assert_eq!(matrix_of(name), None, "{name}");
+        }
+        let scalar = Scalar { kind: ScalarKind::Float, size: 8, big_endian: false };
+        let bytes = Bytes { packing: Packing::Plain, offset: 0, length: 0, skip: 0, crc_32: None };
+        let array = |name: &str, rows, columns| {
+            let place = |start| ArrayColumn { name: String::new(), start, scalar };
+            let columns = (0..columns).map(place).collect();
+            Array { name: name.to_owned(), bytes, rows, stride: 8, columns, halves: Vec::new() }
+        };
+        let arrays = [array("fs", 1, 1), array("t", 9, 1), array("f", 9, 3)];
+        let names = |arrays: &[Array]| -> Vec<String> {
+            let file = Source::in_memory(Path::new("a.mat"), bytes::Bytes::new());
+            super::names(&file, arrays).unwrap().iter().map(ToString::to_string).collect()
+        };
+        assert_eq!(names(&arrays), ["t", "f(:,1)", "f(:,2)", "f(:,3)"]);
+        assert_eq!(contents(&arrays), "columns \"fs, t, f(:,1) to f(:,3)\"");
+        let start = |arrays: &[Array], name: &str| {
+            let name = ColumnName::Name(name.to_owned());
+            let field = Field { name, expected: String::new(), rule: crate::column::Rule::Any };
+            find(Path::new("a.mat"), arrays, &field).map(|(_, column)| column.start).ok()
+        };
+        assert_eq!(["f(:,1)", "f(:,3)", "t(:,1)"].map(|name| start(&arrays, name)), [Some(0), Some(2), Some(0)]);
+        assert_eq!(["f", "f(:,0)", "f(:,4)", "g(:,1)"].map(|name| start(&arrays, name)), [None; 4]);
+        // A matrix alone has numbers, and these names too.
+        assert_eq!(names(&arrays[2..]), ["column 1", "column 2", "column 3"]);
+        assert_eq!(start(&arrays[2..], "f(:,2)"), Some(1));
     }
 }

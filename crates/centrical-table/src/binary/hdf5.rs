@@ -4,6 +4,7 @@ use std::path::Path;
 
 use hdf5_pure::{ChunkIndex, Dataset, Error as HdfError, File, FormatError, ReadSeekSource};
 
+use super::arrays::{column_names, matrix_of};
 use super::catch_panic::catch_panic;
 use super::columnar::Column;
 use crate::column::{ColumnName, Field, ROWS};
@@ -22,10 +23,29 @@ pub(super) fn columns(source: &Source, by_columns: bool, fields: &[Field], most:
     fields.iter().map(|field| column(source, &hdf, field, by_columns, most)).collect()
 }
 
-/// The names of the datasets.
-pub(super) fn names(source: &Source) -> Result<Vec<String>, Error> {
+/// The names of the datasets, and of the columns of matrices.
+pub(super) fn names(source: &Source, by_columns: bool) -> Result<Vec<ColumnName>, Error> {
     let hdf = open(source)?;
-    catch_panic(|| hdf.root().datasets()).map_err(|e| damaged(source.name(), Place::Whole, e.as_ref()))
+    let datasets = catch_panic(|| hdf.root().datasets());
+    let datasets = datasets.map_err(|e| damaged(source.name(), Place::Whole, e.as_ref()))?;
+    let of_dataset = |name: &String| -> Vec<ColumnName> {
+        let shape = catch_panic(|| hdf.dataset(name)?.shape()).unwrap_or_default();
+        match rows_and_columns(&shape, by_columns) {
+            Some((_, columns @ 2..)) => column_names(name, usize::try_from(columns).unwrap_or(usize::MAX)),
+            _ => vec![ColumnName::Name(name.clone())],
+        }
+    };
+    Ok(datasets.iter().flat_map(of_dataset).collect())
+}
+
+/// Rows and columns of a vector or a matrix of this shape.
+fn rows_and_columns(shape: &[u64], by_columns: bool) -> Option<(u64, u64)> {
+    match *shape {
+        [rows] | [1, rows] | [rows, 1] => Some((rows, 1)),
+        [columns, rows] if by_columns => Some((rows, columns)),
+        [rows, columns] => Some((rows, columns)),
+        _ => None,
+    }
 }
 
 fn open(source: &Source) -> Result<File, Error> {
@@ -39,7 +59,8 @@ fn damaged(file: &Path, place: Place, error: Option<&HdfError>) -> Error {
     Error::content(file, place, format!("damaged HDF5 ({why})"), "a whole HDF5 file")
 }
 
-/// One column: a vector by the path of its dataset, or a column of the only dataset by its number.
+/// One column: a vector by the path of its dataset, a column of a matrix by [`column_names`], or of the only dataset by
+/// its number.
 fn column(source: &Source, hdf: &File, field: &Field, by_columns: bool, most: u64) -> Result<Column, Error> {
     let (file, place) = (source.name(), || Place::Column(field.name.to_string()));
     let (path, name) = (file.to_owned(), place());
@@ -48,22 +69,20 @@ fn column(source: &Source, hdf: &File, field: &Field, by_columns: bool, most: u6
     let names = catch_panic(|| hdf.root().datasets()).map_err(&damaged)?;
     let found = || format!("datasets {}", quoted(names.join(", ").as_bytes()));
     let (name, number) = match (&field.name, names.as_slice()) {
-        (ColumnName::Name(name), _) => (name, 1),
-        (ColumnName::Number(number), [only]) => (only, *number),
+        (ColumnName::Name(name), _) => matrix_of(name).map_or((&**name, None), |(name, number)| (name, Some(number))),
+        (ColumnName::Number(number), [only]) => (&**only, Some(*number)),
         _ => return wrong(found(), "one dataset, or [columns] by name"),
     };
     let Ok(dataset) = catch_panic(|| hdf.dataset(name)) else { return wrong(found(), "a dataset of this name") };
     let shape = catch_panic(|| dataset.shape()).map_err(&damaged)?;
-    let (rows, columns) = match shape.as_slice() {
-        [rows] | [1, rows] | [rows, 1] => (*rows, 1),
-        [columns, rows] if by_columns => (*rows, *columns),
-        [rows, columns] => (*rows, *columns),
-        _ => return wrong(format!("an array of shape {shape:?}"), "a vector or a matrix"),
+    let Some((rows, columns)) = rows_and_columns(&shape, by_columns) else {
+        return wrong(format!("an array of shape {shape:?}"), "a vector or a matrix");
     };
-    let by_name = matches!(field.name, ColumnName::Name(_));
-    let is_asked = if by_name { columns == 1 } else { (1..=columns).contains(&(number as u64)) };
+    let is_asked = number.map_or(columns == 1, |number| (1..=columns).contains(&(number as u64)));
+    let number = number.unwrap_or(1);
     if !is_asked || columns > AT_ONCE || rows > most {
-        return wrong(format!("an array of shape {shape:?}"), "a vector by name, or a column of a matrix by number");
+        let expected = "a vector by name, or a column of a matrix by number, or by name as in f(:,2)";
+        return wrong(format!("an array of shape {shape:?}"), expected);
     }
     if let Some((found, expected)) = unreadable(&dataset).map_err(&damaged)? {
         return wrong(found, expected);

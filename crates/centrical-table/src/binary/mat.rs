@@ -1,8 +1,8 @@
 //! MATLAB files of version 5 (`save -v6` and `-v7`): vectors and matrices of numbers, packed or not.
 //!
 //! After a header of 128 bytes come elements: a type, a size and that many bytes, padded to eight. An element is a
-//! matrix, or a matrix packed by zlib; inside, further elements hold its class, dimensions, name and numbers. What
-//! is not a real matrix of numbers (text, cells, structures, complex numbers) is passed over.
+//! matrix, or a matrix packed by zlib; inside, further elements hold its class, dimensions, name and numbers. Of what
+//! is not a real matrix of numbers (text, cells, structures, complex numbers) only the name is kept, for messages.
 
 use std::io::{self, Read};
 
@@ -30,7 +30,7 @@ pub(super) fn columns(source: &Source, fields: &[Field]) -> Result<Vec<Column>, 
 
 /// Their names, or numbers.
 pub(super) fn names(source: &Source) -> Result<Vec<ColumnName>, Error> {
-    Ok(arrays::names(&matrices(source)?))
+    arrays::names(source, &matrices(source)?)
 }
 
 fn matrices(source: &Source) -> Result<Vec<Array>, Error> {
@@ -72,7 +72,7 @@ fn arrays(source: &Source) -> io::Result<Vec<Array>> {
     Ok(arrays)
 }
 
-/// A matrix of numbers, if these bytes are one.
+/// A matrix of numbers; of another variable its name.
 fn array(source: &Source, bytes: Bytes, big_endian: bool) -> io::Result<Option<Array>> {
     /// Classes 6 to 15 are the real numbers, this flag makes them complex.
     const COMPLEX: u32 = 0x800;
@@ -82,7 +82,8 @@ fn array(source: &Source, bytes: Bytes, big_endian: bool) -> io::Result<Option<A
     let dimensions = stream.element(8)?;
     let name = String::from_utf8_lossy(&stream.element(MOST)?).into_owned();
     if !(6..=15).contains(&(class & 0xff)) || class & COMPLEX != 0 || dimensions.len() != 8 {
-        return Ok(None);
+        let none = Vec::new();
+        return Ok(Some(Array { name, bytes, rows: 0, stride: 0, columns: none, halves: Vec::new() }));
     }
     let numbers = stream.tag()?;
     let Some(scalar) = scalar(numbers.kind, big_endian) else { return Ok(None) };

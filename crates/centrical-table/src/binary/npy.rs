@@ -23,7 +23,7 @@ pub(super) fn columns(source: &Source, fields: &[Field]) -> Result<Vec<Column>, 
 
 /// Their names, or numbers.
 pub(super) fn names(source: &Source) -> Result<Vec<ColumnName>, Error> {
-    Ok(arrays::names(&[only(source)?]))
+    arrays::names(source, &[only(source)?])
 }
 
 /// The columns of a `.npz` archive.
@@ -33,7 +33,7 @@ pub(super) fn archive_columns(source: &Source, fields: &[Field]) -> Result<Vec<C
 
 /// Their names, or numbers.
 pub(super) fn archive_names(source: &Source) -> Result<Vec<ColumnName>, Error> {
-    Ok(arrays::names(&members(source)?))
+    arrays::names(source, &members(source)?)
 }
 
 /// The array of a `.npy` file.

@@ -167,7 +167,15 @@ fn columns_of(path: PathBuf) -> Result<Result<FileColumns, Unused>, Error> {
                 let names = columns.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
                 (of_binary(path, &columns), format!("columns {names}"))
             }
-            Err(error) => return Ok(Err(Unused { path, reason: error.to_string() })),
+            Err(error) => {
+                let reason = match error {
+                    centrical_table::Error::Content { found, expected, .. } => {
+                        format!("found {found}, expected {expected}")
+                    }
+                    other => other.to_string(),
+                };
+                return Ok(Err(Unused { path, reason }));
+            }
         },
     };
     let is_used = file.speed.is_some() || !file.readings.is_empty();

@@ -1,0 +1,150 @@
+//! Layouts that other programs write: `init` finds the columns, and the session calibrates to the numbers of the example.
+
+use std::fs;
+use std::path::Path;
+
+use serde_json::Value;
+
+use crate::session::Copy;
+
+/// Names, values and standard uncertainties of the parameters that the session has.
+fn parameters(copy: &Copy) -> Value {
+    let output = copy.calibrate(&["--json"]);
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    let result: Value = serde_json::from_slice(&output.stdout).unwrap();
+    result["parameters"].clone()
+}
+
+/// Writes every record and telemetry anew, from the values of its rows, as files of another ending.
+fn rewrite(copy: &Copy, ending: &str, write: impl Fn(&Path, &[Vec<f64>])) {
+    for part in ["records", "telemetry"] {
+        for file in fs::read_dir(copy.session().join(part)).unwrap() {
+            let path = file.unwrap().path();
+            let text = fs::read_to_string(&path).unwrap();
+            let row = |line: &str| line.split(',').map(|number| number.parse().unwrap()).collect();
+            let rows: Vec<Vec<f64>> = text.lines().skip(1).map(row).collect();
+            fs::remove_file(&path).unwrap();
+            write(&path.with_extension(ending), &rows);
+        }
+    }
+    copy.edit("experiment.toml", |text| text.replace(".csv\"", &format!(".{ending}\"")));
+}
+
+fn draft(copy: &Copy, parts: &[&str]) -> String {
+    let inputs: Vec<String> = parts.iter().map(|part| copy.session().join(part).display().to_string()).collect();
+    let arguments: Vec<&str> = std::iter::once("init").chain(inputs.iter().map(String::as_str)).collect();
+    let output = copy.run(&arguments);
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout).unwrap()
+}
+
+#[track_caller]
+fn assert_lines(draft: &str, lines: &[&str]) {
+    for line in lines {
+        assert!(draft.lines().any(|found| found.starts_with(line)), "{line} in {draft}");
+    }
+}
+
+/// A matrix of MATLAB 5, uncompressed; its rows are those of `rows`.
+fn matrix(name: &str, rows: &[&[f64]]) -> Vec<u8> {
+    let element = |kind: u32, bytes: &[u8]| -> Vec<u8> {
+        let length = u32::try_from(bytes.len()).unwrap();
+        let mut element = [kind.to_le_bytes(), length.to_le_bytes()].concat();
+        element.extend_from_slice(bytes);
+        element.resize(element.len().next_multiple_of(8), 0);
+        element
+    };
+    let integers = |numbers: [u32; 2]| numbers.map(u32::to_le_bytes).concat();
+    let columns = rows[0].len();
+    let numbers: Vec<u8> = (0..columns).flat_map(|j| rows.iter().flat_map(move |row| row[j].to_le_bytes())).collect();
+    let shape = [rows.len(), columns].map(|count| u32::try_from(count).unwrap());
+    let parts = [element(6, &integers([6, 0])), element(5, &integers(shape)), element(1, name.as_bytes())];
+    element(14, &[parts.concat(), element(9, &numbers)].concat())
+}
+
+fn write_matlab(path: &Path, variables: &[Vec<u8>]) {
+    let mut file = b"MATLAB 5.0 MAT-file".to_vec();
+    file.resize(124, b' ');
+    file.extend_from_slice(&[0, 1, b'I', b'M']);
+    file.extend_from_slice(&variables.concat());
+    fs::write(path, file).unwrap();
+}
+
+/// A vector of times beside a matrix of readings, and a sampling rate.
+#[test]
+fn a_matrix_beside_a_vector() {
+    let copy = Copy::new();
+    rewrite(&copy, "mat", |path, rows| {
+        let [t, f] = [0..1, 1..rows[0].len()].map(|columns| rows.iter().map(|row| &row[columns.clone()]).collect());
+        let (t, f): (Vec<&[f64]>, Vec<&[f64]>) = (t, f);
+        let name = if f[0].len() == 1 { "omega" } else { "f" };
+        write_matlab(path, &[matrix("fs", &[&[100.0]]), matrix("t", &t), matrix(name, &f)]);
+    });
+    let names = "f = [\"f(:,1)\", \"f(:,2)\", \"f(:,3)\"]";
+    assert_lines(&draft(&copy, &["records", "telemetry"]), &["time = \"t\"  # FOUND", &format!("{names}  # FOUND")]);
+    let refused = copy.calibrate(&[]);
+    let message = String::from_utf8_lossy(&refused.stderr).into_owned();
+    assert!(
+        message.contains("f1: found columns \"fs, t, f(:,1) to f(:,3)\", expected a column of this name"),
+        "{message}"
+    );
+    copy.edit("experiment.toml", |text| text.replace("f = [\"f1\", \"f2\", \"f3\"]", names));
+    assert_eq!(parameters(&copy), parameters(&Copy::new()));
+}
+
+/// Rows as a data logger writes them that begins 30 s before midnight, the date and the time divided so.
+fn write_logged(path: &Path, rows: &[Vec<f64>], divided: char) {
+    const DAY: i64 = 86_400 * 10_000;
+    #[expect(clippy::cast_possible_truncation, reason = "minutes in tenths of a millisecond")]
+    let ticks = |t: f64| (t * 1e4).round() as i64 + DAY - 300_000;
+    let row = |row: &Vec<f64>| {
+        let (day, of_day) = (ticks(row[0]) / DAY, ticks(row[0]) % DAY);
+        let (seconds, fraction) = (of_day / 10_000, of_day % 10_000);
+        let time = format!("{:02}:{:02}:{:02},{fraction:04}", seconds / 3600, seconds / 60 % 60, seconds % 60);
+        let readings: String = row[1..].iter().map(|reading| format!(";{reading}").replace('.', ",")).collect();
+        format!("{:02}.10.2026{divided}{time}{readings}\n", 5 + day)
+    };
+    let readings = if rows[0].len() == 2 { "omega" } else { "f1;f2;f3" };
+    fs::write(path, format!("Date{divided}Time;{readings}\n{}", rows.iter().map(row).collect::<String>())).unwrap();
+}
+
+/// A time of the day beside its date, over midnight.
+#[test]
+fn a_date_beside_a_time_of_the_day() {
+    let copy = Copy::new();
+    rewrite(&copy, "txt", |path, rows| write_logged(path, rows, ';'));
+    let line = "time = { date = \"Date\", column = \"Time\" }";
+    let drafted = draft(&copy, &["records", "telemetry"]);
+    assert_lines(&drafted, &[&format!("{line}  # FOUND"), "f = [\"f1\", \"f2\", \"f3\"]  # FOUND"]);
+    assert!(!drafted.contains("telemetry_time"), "{drafted}");
+    copy.edit("experiment.toml", |text| text.replace("time = \"t\"", "time = \"Time\""));
+    let refused = copy.calibrate(&[]);
+    let message = String::from_utf8_lossy(&refused.stderr).into_owned();
+    assert!(message.contains("after midnight a time of the day needs a date, as in time = { date"), "{message}");
+    copy.edit("experiment.toml", |text| text.replace("time = \"Time\"", line));
+    let stamped = Copy::new();
+    rewrite(&stamped, "txt", |path, rows| write_logged(path, rows, ' '));
+    stamped.edit("experiment.toml", |text| text.replace("time = \"t\"", "time = \"Date Time\""));
+    assert_eq!(parameters(&copy), parameters(&stamped));
+}
+
+#[test]
+fn a_date_is_that_of_a_time() {
+    for (own, entry, expected) in [
+        ("time", "{ date = \"Date\" }", "found a date alone, expected column = that of the times of the day"),
+        (
+            "time",
+            "{ date = 1, column = 2, unit = \"s\" }",
+            "found a date beside a rate or a unit, expected one of them",
+        ),
+        ("speed", "{ date = 1, column = 2 }", "found a date, expected no date (it belongs to a column of time)"),
+    ] {
+        let copy = Copy::new();
+        copy.edit("experiment.toml", |text| {
+            let line = text.lines().find(|line| line.starts_with(&format!("{own} = "))).unwrap();
+            text.replacen(line, &format!("{own} = {entry}"), 1).replace("speed_unit = \"rad/s\"\n", "")
+        });
+        let message = String::from_utf8_lossy(&copy.calibrate(&[]).stderr).into_owned();
+        assert!(message.contains(expected), "{message}");
+    }
+}
