@@ -148,3 +148,32 @@ fn a_date_is_that_of_a_time() {
         assert!(message.contains(expected), "{message}");
     }
 }
+
+/// A count of samples has no rate: it is asked for, and plateaus are matched to those of the telemetry in their order.
+#[test]
+fn a_count_of_samples_is_asked_for_its_rate() {
+    for (header, names) in [("sample,", "column = \"sample\", "), ("counter,", "column = \"counter\", "), ("", "")] {
+        let copy = Copy::new();
+        for file in fs::read_dir(copy.session().join("records")).unwrap() {
+            let path = file.unwrap().path();
+            let text = fs::read_to_string(&path).unwrap();
+            let row = |(number, line): (usize, &str)| {
+                let readings = line.split_once(',').unwrap().1;
+                if header.is_empty() { format!("{readings}\n") } else { format!("{number},{readings}\n") }
+            };
+            let rows: String = text.lines().skip(1).enumerate().map(row).collect();
+            fs::write(&path, format!("{header}f1,f2,f3\n{rows}")).unwrap();
+        }
+        let drafted = draft(&copy, &["records", "telemetry"]);
+        let time = format!("time = {{ {names}rate = \"?\" }}  # FILL IN: such as \"1 kHz\": the records have no time");
+        assert_lines(&drafted, &[&time, "telemetry_time = \"t\"  # FOUND", "f = [\"f1\", \"f2\", \"f3\"]  # FOUND"]);
+        assert!(drafted.contains("; by the length of the telemetry about 100.0 Hz"), "{drafted}");
+        assert!(!drafted.contains("samples per second"), "{drafted}");
+        for arm in ["arm = [0.500, 0.0, 0.0]  # GUESS", "arm = [0.250, 0.0, 0.0]  # GUESS"] {
+            assert_eq!(drafted.matches(arm).count(), 6, "{drafted}");
+        }
+        let drafted = draft(&copy, &["records"]);
+        assert_lines(&drafted, &[&time]);
+        assert!(drafted.contains(" samples; no file has the speed"), "{drafted}");
+    }
+}

@@ -6,6 +6,9 @@ use centrical_table::{ColumnName, text_form, unit_of_word};
 
 use crate::units::Dimension;
 
+/// The unit of a count of samples.
+pub(super) const SAMPLES: &str = "samples";
+
 /// A column, and its unit if the file names it.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Label {
@@ -42,6 +45,11 @@ impl Label {
         Self { column: ColumnName::Number(index + 1), unit: None, guess, unit_guess: None }
     }
 
+    /// Whether it counts samples.
+    pub fn is_count(&self) -> bool {
+        self.unit == Some(SAMPLES)
+    }
+
     /// A column of a table that is asked for the usual names.
     pub fn usual(name: &str) -> Self {
         Self { column: ColumnName::Name(name.to_owned()), unit: None, guess: None, unit_guess: None }
@@ -56,6 +64,8 @@ pub(super) enum What {
     /// A rate of turn about an axis of the unit.
     Rate,
     Reading,
+    /// The number of a row.
+    Count,
     Other,
 }
 
@@ -63,9 +73,11 @@ pub(super) enum What {
 pub(super) fn what(name: &str, unit: Option<&str>) -> What {
     let name = name.to_lowercase();
     let word: String = name.chars().take_while(|c| !"([,".contains(*c)).collect::<String>().trim().to_owned();
-    let numbers = ["no", "n", "№", "index", "sample"];
-    let is_number_of_row = unit.is_none() && (numbers.contains(&word.as_str()) || word.starts_with("__index_level"));
-    if has(&word, &["temp", "темп", "status", "flag", "marker", "humid", "press"]) || is_number_of_row {
+    let numbers = ["no", "n", "№", "index", "sample", "samples"];
+    if unit.is_none() && (numbers.contains(&word.as_str()) || word.starts_with("__index_level")) {
+        return What::Count;
+    }
+    if has(&word, &["temp", "темп", "status", "flag", "marker", "humid", "press"]) {
         return What::Other;
     }
     let is_of = |dimension: Dimension| unit.is_some_and(|unit| dimension.factor(unit).is_some());
@@ -174,7 +186,8 @@ mod tests {
             ("Hz", Some("Hz"), What::Speed),
             ("omega", None, What::Speed),
             ("обороты", Some("rpm"), What::Speed),
-            ("n", None, What::Other),
+            ("n", None, What::Count),
+            ("temp", None, What::Other),
             ("ms", Some("ms"), What::Time),
             ("t_ms", Some("ms"), What::Time),
             ("t", None, What::Time),

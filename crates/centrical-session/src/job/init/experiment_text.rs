@@ -9,7 +9,7 @@ use super::draft::{Draft, InitRequest, UNKNOWN, relative};
 use super::file_roles::{FileColumns, Unused};
 use super::findings::{Attitude, Findings, Set};
 use super::output_unit::OutputUnit;
-use super::sighting::{Raw, SeenMounting};
+use super::sighting::{NOMINAL_RATE, Raw, SeenMounting};
 use super::tumbled::Tumbled;
 use crate::error::Error;
 use crate::settings::toml_text;
@@ -96,7 +96,8 @@ fn heading(draft: &mut Draft, mountings: &[SeenMounting]) {
             form.encoding
         ));
     }
-    if let Some(rate) = mountings.iter().find_map(|m| m.rate) {
+    let is_timed = |m: &&SeenMounting| !m.group.records[0].is_counted();
+    if let Some(rate) = mountings.iter().filter(is_timed).find_map(|m| m.rate) {
         draft.line(&format!("# {} records, {rate:.4} samples per second in the first.", mountings.len()));
     }
 }
@@ -206,12 +207,8 @@ fn columns(draft: &mut Draft, mountings: &[SeenMounting], unit: &OutputUnit) {
     let records = &mountings[0].group.records;
     let telemetry = mountings.iter().find_map(|m| m.group.telemetry.as_ref());
     draft.line("[columns]");
-    match &records[0].time {
-        Some(label) => draft.shown(label.guess, &format!("time = {}", written(label, "s")), "time"),
-        None => {
-            draft.fill_in("[columns] time", "time = { rate = \"?\" }", "such as \"1 kHz\": the records have no time");
-        }
-    }
+    let timed = mountings.iter().find(|m| !m.is_counted && m.group.telemetry.is_some());
+    time(draft, "time", &records[0], "the records have", timed.and_then(|m| m.rate));
     let readings: Vec<&Label> = if records.len() == 3 {
         records.iter().map(|r| &r.readings[0]).collect()
     } else {
@@ -234,8 +231,8 @@ fn columns(draft: &mut Draft, mountings: &[SeenMounting], unit: &OutputUnit) {
 }
 
 fn of_telemetry(draft: &mut Draft, telemetry: &FileColumns, of_records: Option<&Label>) {
-    if let Some(time) = telemetry.time.as_ref().filter(|time| Some(*time) != of_records) {
-        draft.shown(time.guess, &format!("telemetry_time = {}", written(time, "s")), "time of the telemetry");
+    if telemetry.time.as_ref() != of_records || telemetry.is_counted() {
+        time(draft, "telemetry_time", telemetry, "the telemetry has", None);
     }
     if let Some(speed) = &telemetry.speed {
         let line = format!("speed = {}", column(&speed.column));
@@ -244,6 +241,25 @@ fn of_telemetry(draft: &mut Draft, telemetry: &FileColumns, of_records: Option<&
             draft.shown(speed.unit_guess, &format!("speed_unit = \"{unit}\""), "the unit in the header");
         } else {
             draft.guess("speed_unit = \"rad/s\"", "the file names no unit; \"rpm\" and \"deg/s\" are others");
+        }
+    }
+}
+
+/// The time of a file; where it has none but a count of samples, their rate is to be filled in, which may be about `rate` [Hz].
+fn time(draft: &mut Draft, key: &str, file: &FileColumns, whose: &str, rate: Option<f64>) {
+    let about = rate.map_or(String::new(), |rate| format!("; by the length of the telemetry about {rate:.1} Hz"));
+    let mut rate_of = |entry: &str, why: &str| {
+        let reason = format!("such as \"1 kHz\": {whose} {why}{about}");
+        draft.fill_in(&format!("[columns] {key}"), &format!("{key} = {{ {entry}rate = {UNKNOWN} }}"), &reason);
+    };
+    match &file.time {
+        None => rate_of("", "no time"),
+        Some(label) if label.is_count() => {
+            rate_of(&format!("column = {}, ", column(&label.column)), "no time but a count of samples");
+        }
+        Some(label) => {
+            let how = if key == "time" { "time" } else { "time of the telemetry" };
+            draft.shown(label.guess, &format!("{key} = {}", written(label, "s")), how);
         }
     }
 }
@@ -337,21 +353,26 @@ fn plateaus(draft: &mut Draft, mounting: &SeenMounting, schedule: &[Set], table:
     draft.line("plateaus = [");
     for (index, (set, plateau)) in schedule.iter().zip(&mounting.plateaus).enumerate() {
         let seconds = plateau.window[1] - plateau.window[0];
+        let length = if mounting.is_counted {
+            format!("{:.0} samples", seconds * NOMINAL_RATE)
+        } else {
+            format!("{seconds:.0} s")
+        };
         let key = format!("{table} plateau {}", index + 1);
         match set {
             Set::Rest => draft.fill_in(
                 &key,
                 "  { speed = 0, angle = \"?\" },",
-                &format!("angle of the arm at rest, such as \"0 deg\"; seen for {seconds:.0} s"),
+                &format!("angle of the arm at rest, such as \"0 deg\"; seen for {length}"),
             ),
-            Set::Speed(speed) => draft.guess(
-                &format!("  {{ speed = \"{speed}\" }},"),
-                &format!("seen for {seconds:.0} s; write what was set"),
-            ),
+            Set::Speed(speed) => {
+                let line = format!("  {{ speed = \"{speed}\" }},");
+                draft.guess(&line, &format!("seen for {length}; write what was set"));
+            }
             Set::Unknown => draft.fill_in(
                 &key,
                 "  { speed = \"?\" },",
-                &format!("a plateau of the readings for {seconds:.0} s; no file has the speed"),
+                &format!("a plateau of the readings for {length}; no file has the speed"),
             ),
         }
     }

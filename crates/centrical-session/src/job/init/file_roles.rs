@@ -10,7 +10,7 @@ use centrical_table::{
     unit_beside_name,
 };
 
-use super::column_names::{Label, What, sort_by_axis, what};
+use super::column_names::{Label, SAMPLES, What, sort_by_axis, what};
 use crate::error::Error;
 
 /// Folders are searched to this depth.
@@ -32,6 +32,8 @@ pub(super) struct FileColumns {
     pub time: Option<Label>,
     pub readings: Vec<Label>,
     pub speed: Option<Label>,
+    /// The number of the row.
+    count: Option<Label>,
     /// Rates of turn about axes of the unit, until all columns are taken.
     rates: Vec<Label>,
     /// Whether its readings are named as those of a gyroscope often are: `gx`, `gy`, `gz`.
@@ -85,6 +87,11 @@ pub(super) fn groups(inputs: &[PathBuf]) -> Result<(Vec<Group>, Vec<Unused>), Er
 }
 
 impl FileColumns {
+    /// Whether its rows have no time but their number.
+    pub(super) fn is_counted(&self) -> bool {
+        self.time.as_ref().is_none_or(Label::is_count)
+    }
+
     /// Columns that have no names, of these numbers from 0, in their usual order; the time may be known.
     fn take_by_number(&mut self, numbers: &[usize]) {
         let mut labels = numbers.iter().copied().map(Label::numbered);
@@ -104,13 +111,15 @@ impl FileColumns {
             What::Speed if self.speed.is_none() => self.speed = Some(label),
             What::Rate => self.rates.push(label),
             What::Reading => self.readings.push(label),
-            What::Time | What::Speed | What::Other => {}
+            What::Count if self.count.is_none() => self.count = Some(label),
+            What::Time | What::Speed | What::Count | What::Other => {}
         }
     }
 
     /// With all columns taken: three readings, or one, or none.
     fn settled(mut self) -> Self {
         take_time(&mut self);
+        take_count(&mut self);
         take_rates(&mut self);
         if self.readings.len() != 3 && self.speed.is_some() {
             // Telemetry with other columns beside the speed.
@@ -259,6 +268,15 @@ fn take_time(file: &mut FileColumns) {
     }
 }
 
+/// Whole numbers in steps of one that stand for a time count samples.
+fn take_count(file: &mut FileColumns) {
+    let is_open = file.time.as_ref().is_none_or(|time| time.guess.is_some() && time.unit.is_none());
+    let Some(label) = file.time.clone().or(file.count.take()).filter(|_| is_open) else { return };
+    if steps(&file.path, &label.column).is_some_and(|steps| steps.iter().all(|step| *step == 1.0)) {
+        file.time = Some(Label { unit: Some(SAMPLES), ..label });
+    }
+}
+
 /// Rates of turn: one is the speed if that is missing; three without a unit may be readings in g.
 fn take_rates(file: &mut FileColumns) {
     let rates = std::mem::take(&mut file.rates);
@@ -275,12 +293,17 @@ fn take_rates(file: &mut FileColumns) {
 
 /// Whether a column of a file rises in all of its first rows.
 fn rises(path: &Path, column: &ColumnName) -> bool {
+    steps(path, column).is_some_and(|steps| steps.iter().all(|step| *step > 0.0))
+}
+
+/// The steps of a column of numbers through its first rows, if there are enough.
+fn steps(path: &Path, column: &ColumnName) -> Option<Vec<f64>> {
     /// Noise rises through as many rows by chance once in 10^13 files.
     const ROWS: usize = 16;
-    let Ok(mut reader) = open(path, &[(column, Rule::Any)]) else { return false };
-    let Ok(Some([rows, ..])) = reader.next_batch() else { return false };
-    let first = rows[0].len().min(1000);
-    first >= ROWS && rows[0][..first].windows(2).all(|pair| pair[1] > pair[0])
+    let mut reader = open(path, &[(column, Rule::Any)]).ok()?;
+    let values = &reader.next_batch().ok()??.first()?[0];
+    let first = &values[..values.len().min(1000)];
+    (first.len() >= ROWS).then(|| first.windows(2).map(|pair| pair[1] - pair[0]).collect())
 }
 
 /// Records by mounting: files of one newtonometer each, named alike but for the axis, belong together. Second, those that are

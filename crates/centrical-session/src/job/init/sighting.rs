@@ -19,13 +19,18 @@ const MIDDLE: [f64; 2] = [0.35, 0.65];
 /// Samples of a reading are thinned to this step [s] where plateaus are sought in them.
 const STEP: f64 = 0.05;
 
+/// Samples per second of what counts them, until a rate is stated.
+pub(super) const NOMINAL_RATE: f64 = 100.0;
+
 /// The files of a mounting and what they show.
 #[derive(Debug)]
 pub(super) struct SeenMounting {
     pub group: Group,
     pub plateaus: Vec<SeenPlateau>,
-    /// Samples per second.
+    /// Samples per second; of a count of samples, by the length of the telemetry.
     pub rate: Option<f64>,
+    /// Whether nothing tells the seconds of the plateaus: their windows are samples at [`NOMINAL_RATE`].
+    pub is_counted: bool,
 }
 
 /// A plateau, and what is known of it.
@@ -38,30 +43,44 @@ pub(super) struct SeenPlateau {
     pub readings: Option<[f64; 3]>,
 }
 
-/// Reads the files of a mounting.
+/// Reads the files of a mounting. Where the record and the telemetry have no clock in common, since one of them counts samples, the
+/// plateaus of the readings are those of the telemetry in their order, if there are as many.
 pub(super) fn sight(group: Group, progress: OnProgress) -> Result<SeenMounting, Error> {
-    let mut seen = Seen::default();
-    let mut plateaus = Vec::new();
-    if let Some(telemetry) = &group.telemetry {
-        let trace = read_telemetry(&telemetry.path, &columns_of(telemetry))?;
-        let stretches = SteadyStretch::all(&trace.t, &trace.omega);
-        let speed = |stretch: &SteadyStretch| Some([stretch.value, stretch.standard_uncertainty]);
-        plateaus =
-            stretches.iter().map(|l| SeenPlateau { window: l.window, speed: speed(l), readings: None }).collect();
-        seen.read(&group, &plateaus, false, progress)?;
-    } else {
-        seen.read(&group, &[], true, progress)?;
-        let magnitude: Vec<f64> = seen.thinned.iter().map(|(_, f)| *f).collect();
-        let times: Vec<f64> = seen.thinned.iter().map(|(t, _)| *t).collect();
-        let bare = |l: &SteadyStretch| SeenPlateau { window: l.window, speed: None, readings: None };
-        plateaus.extend(SteadyStretch::all(&times, &magnitude).iter().map(bare));
-        seen = Seen::default();
-        seen.read(&group, &plateaus, false, progress)?;
+    let is_counted = group.records[0].is_counted();
+    let trace = match &group.telemetry {
+        Some(telemetry) => Some(read_telemetry(&telemetry.path, &columns_of(telemetry))?),
+        None => None,
+    };
+    let mut columns = columns_of_records(&group.records);
+    if let Some(trace) = trace.as_ref().filter(|_| is_counted) {
+        let samples = Seen::of(&group, &columns, &[], false, progress)?.samples;
+        let length = trace.t.last().zip(trace.t.first()).map_or(0.0, |(last, first)| last - first);
+        if samples > 1 && length > 0.0 {
+            columns.time.scale = Scale::factor(length / (samples - 1) as f64);
+        }
     }
-    for (plateau, (sum, count)) in plateaus.iter_mut().zip(&seen.sums) {
-        plateau.readings = (*count > 0).then(|| sum.map(|sum| sum / *count as f64));
+    let stretches = trace.map(|trace| SteadyStretch::all(&trace.t, &trace.omega));
+    let has_clock = !is_counted && group.telemetry.as_ref().is_some_and(|telemetry| !telemetry.is_counted());
+    let windows: Vec<[f64; 2]> = match &stretches {
+        Some(stretches) if has_clock => stretches.iter().map(|stretch| stretch.window).collect(),
+        _ => {
+            let thinned = Seen::of(&group, &columns, &[], true, progress)?.thinned;
+            let (times, magnitudes): (Vec<f64>, Vec<f64>) = thinned.into_iter().unzip();
+            SteadyStretch::all(&times, &magnitudes).iter().map(|stretch| stretch.window).collect()
+        }
+    };
+    let mut plateaus: Vec<SeenPlateau> = match &stretches {
+        Some(stretches) => stretches.iter().map(SeenPlateau::of_telemetry).collect(),
+        None => windows.iter().map(|window| SeenPlateau { window: *window, speed: None, readings: None }).collect(),
+    };
+    let seen = Seen::of(&group, &columns, &windows, false, progress)?;
+    if seen.sums.len() == plateaus.len() {
+        for (plateau, (sum, count)) in plateaus.iter_mut().zip(&seen.sums) {
+            plateau.readings = (*count > 0).then(|| sum.map(|sum| sum / *count as f64));
+        }
     }
-    Ok(SeenMounting { group, plateaus, rate: seen.rate() })
+    let is_counted = group.telemetry.as_ref().map_or(is_counted, FileColumns::is_counted);
+    Ok(SeenMounting { group, plateaus, rate: seen.rate(), is_counted })
 }
 
 /// What a pass over a record collects.
@@ -76,34 +95,30 @@ struct Seen {
 }
 
 impl Seen {
-    /// Sums the readings in the middle of every plateau, or keeps thinned magnitudes.
-    fn read(
-        &mut self,
+    /// Sums the readings in the middle of every window, or keeps thinned magnitudes.
+    fn of(
         group: &Group,
-        plateaus: &[SeenPlateau],
+        columns: &Columns,
+        windows: &[[f64; 2]],
         is_thinned: bool,
         progress: OnProgress,
-    ) -> Result<(), Error> {
-        self.sums = vec![([0.0; 3], 0); plateaus.len()];
-        let middle = |plateau: &SeenPlateau| {
-            let [start, end] = plateau.window;
-            MIDDLE.map(|part| start + part * (end - start))
-        };
-        let middles: Vec<[f64; 2]> = plateaus.iter().map(middle).collect();
-        let columns = columns_of_records(&group.records);
+    ) -> Result<Self, Error> {
+        let mut seen = Self { sums: vec![([0.0; 3], 0); windows.len()], ..Self::default() };
+        let middle = |[start, end]: &[f64; 2]| MIDDLE.map(|part| start + part * (end - start));
+        let middles: Vec<[f64; 2]> = windows.iter().map(middle).collect();
         let files: Vec<_> = group.records.iter().map(|file| file.path.clone()).collect();
         let sources = Folder::default().open_record(&files)?;
-        let mut reader = RecordReader::open_all(sources, centrical_table::Extent::Whole, &columns)?;
+        let mut reader = RecordReader::open_all(sources, centrical_table::Extent::Whole, columns)?;
         while let Some(batch) = reader.next_batch()? {
             advance(progress, 0)?;
             for rows in batch {
                 for (n, &t) in rows[0].iter().enumerate() {
                     let f = [rows[1][n], rows[2][n], rows[3][n]];
-                    self.take(t, f, &middles, is_thinned);
+                    seen.take(t, f, &middles, is_thinned);
                 }
             }
         }
-        Ok(())
+        Ok(seen)
     }
 
     fn take(&mut self, t: f64, f: [f64; 3], middles: &[[f64; 2]], is_thinned: bool) {
@@ -150,6 +165,12 @@ fn columns_of_records(records: &[FileColumns]) -> Columns {
     columns
 }
 
+/// What takes the numbers of a column to SI, as far as its unit is known.
+fn factor(label: &Label, dimension: Dimension) -> f64 {
+    let of_unit = || label.unit.and_then(|unit| dimension.factor(unit)).unwrap_or(1.0);
+    if label.is_count() { 1.0 / NOMINAL_RATE } else { of_unit() }
+}
+
 /// Time and speed of a file.
 fn columns_of(file: &FileColumns) -> Columns {
     let usual = Columns::default();
@@ -157,9 +178,9 @@ fn columns_of(file: &FileColumns) -> Columns {
         Some(label) => Column {
             name: label.column.clone(),
             unit: label.unit.unwrap_or(&usual.unit).to_owned(),
-            scale: Scale::factor(label.unit.and_then(|unit| dimension.factor(unit)).unwrap_or(1.0)),
+            scale: Scale::factor(factor(label, dimension)),
         },
-        None => Column { name: ColumnName::Row, ..usual.clone() },
+        None => Column { name: ColumnName::Row, scale: Scale::factor(1.0 / NOMINAL_RATE), ..usual.clone() },
     };
     let time = column(&file.time, &usual.time, Dimension::Time);
     Columns { telemetry_time: time.clone(), speed: column(&file.speed, &usual.speed, Dimension::Speed), time, ..usual }
@@ -195,6 +216,11 @@ impl SeenMounting {
 }
 
 impl SeenPlateau {
+    fn of_telemetry(stretch: &SteadyStretch) -> Self {
+        let speed = Some([stretch.value, stretch.standard_uncertainty]);
+        Self { window: stretch.window, speed, readings: None }
+    }
+
     /// Whether the arm is at rest, by the telemetry.
     pub(super) fn is_rest(&self) -> Option<bool> {
         /// A creep that no schedule asks for [rad/s].
