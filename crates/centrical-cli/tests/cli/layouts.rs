@@ -1,5 +1,6 @@
 //! Layouts that other programs write: `init` finds the columns, and the session calibrates to the numbers of the example.
 
+use std::f64::consts::PI;
 use std::fs;
 use std::path::Path;
 
@@ -176,4 +177,28 @@ fn a_count_of_samples_is_asked_for_its_rate() {
         assert_lines(&drafted, &[&time]);
         assert!(drafted.contains(" samples; no file has the speed"), "{drafted}");
     }
+}
+
+/// What names do not show is a guess, and an arm is a fraction of a metre or some metres long.
+#[test]
+fn an_order_and_an_arm_that_no_file_shows() {
+    let factor = 180.0 / PI;
+    let copy = Copy::new();
+    rewrite(&copy, "txt", |path, rows| {
+        let header = if rows[0].len() == 2 { "t,speed [rpm]" } else { "t,up,left,fore" };
+        let row = |row: &Vec<f64>| match row.as_slice() {
+            [t, omega] => format!("{t},{}\n", omega * factor),
+            [t, f1, f2, f3] => format!("{t},{f1},{f2},{f3}\n"),
+            _ => unreachable!(),
+        };
+        fs::write(path, format!("{header}\n{}", rows.iter().map(row).collect::<String>())).unwrap();
+    });
+    let drafted = draft(&copy, &["records", "telemetry"]);
+    assert_lines(
+        &drafted,
+        &["f = [\"up\", \"left\", \"fore\"]  # GUESS: the order in which they stand", "speed_unit = \"rpm\"  # FOUND"],
+    );
+    let arm = "arm = [\"?\", 0.0, 0.0]  # FILL IN: radius of the reference point by the drawing, m; readings and speeds in rpm make 0.0";
+    assert_eq!(drafted.matches(arm).count(), 12, "{drafted}");
+    assert!(drafted.contains("which is no arm; with speeds in deg/s it would be 0."), "{drafted}");
 }

@@ -99,20 +99,26 @@ pub(super) fn what(name: &str, unit: Option<&str>) -> What {
     }
 }
 
-/// Puts three readings in the order of their axes where their names differ in nothing else: `acc_z`, `acc_y`, `acc_x`.
+/// Puts three readings in the order of their axes where their names differ in nothing else: `acc_z`, `acc_y`, `acc_x`. Else, unless
+/// their names differ first by the axes in their order, it is a guess that they stand in it.
 pub(super) fn sort_by_axis(readings: &mut [Label]) {
     let names: Vec<Vec<char>> =
         readings.iter().map(|label| label.column.to_string().to_lowercase().chars().collect()).collect();
     let [a, b, c] = names.as_slice() else { return };
-    if a.len() != b.len() || b.len() != c.len() {
-        return;
-    }
-    let differing = (0..a.len()).map(|n| [a[n], b[n], c[n]]).filter(|[a, b, c]| a != b || b != c);
+    let shortest = a.len().min(b.len()).min(c.len());
+    let differing = (0..shortest).map(|n| [a[n], b[n], c[n]]).filter(|[a, b, c]| a != b || b != c);
     let mut orders: Vec<Option<[usize; 3]>> = differing.map(order_of_axes).collect();
+    let first = orders.first().copied().flatten();
     orders.dedup();
-    if let [Some(order)] = orders[..] {
-        let sorted: Vec<Label> = order.into_iter().map(|n| readings[n].clone()).collect();
+    let is_of_one_length = [b, c].iter().all(|other| other.len() == a.len());
+    if let ([Some(order)], true) = (&orders[..], is_of_one_length) {
+        let sorted: Vec<Label> = order.iter().map(|n| readings[*n].clone()).collect();
         readings.clone_from_slice(&sorted);
+    } else if first != Some([0, 1, 2]) {
+        let guess = "the order in which they stand; their names show no axis";
+        for label in readings {
+            label.guess.get_or_insert(guess);
+        }
     }
 }
 
@@ -216,6 +222,17 @@ mod tests {
         assert_eq!(sorted(["a2 (z)", "a1 (y)", "a0 (x)"]), ["a0 (x)", "a1 (y)", "a2 (z)"]);
         for as_they_stand in [["up", "left", "fore"], ["a2 (x)", "a1 (y)", "a3 (z)"], ["s3", "s7", "s9"]] {
             assert_eq!(sorted(as_they_stand), as_they_stand);
+        }
+        let is_guess = |names: [&str; 3]| {
+            let mut labels = names.map(|name| Label::of_text(name, None));
+            sort_by_axis(&mut labels);
+            labels[0].guess.is_some()
+        };
+        for names in [["up", "left", "fore"], ["a2 (x)", "a1 (y)", "a3 (z)"], ["f(:,2)", "f(:,3)", "f(:,4)"]] {
+            assert!(is_guess(names), "{names:?}");
+        }
+        for names in [["f1", "f2", "f3"], ["z", "y", "x"], ["Acc X", "Acc Y", "Acc Z (up)"], ["AI1", "AI2", "AI3"]] {
+            assert!(!is_guess(names), "{names:?}");
         }
         assert_eq!(what("gx", Some("m/s^2")), What::Reading);
         assert_eq!(what("n", Some("rpm")), What::Speed);

@@ -54,7 +54,7 @@ pub(super) fn draft(
                 draft.fill_in(&format!("[[mounting]] {}", m + 1), "position = \"?\"", "which of the positions above");
             }
         }
-        arm(&mut draft, m, findings.radii[m]);
+        arm(&mut draft, m, findings.radii[m], findings.no_arm.as_deref());
         files(&mut draft, mounting, request.folder());
         if !is_common {
             plateaus(&mut draft, mounting, &findings.schedules[m], &format!("[[mounting]] {}", m + 1));
@@ -321,7 +321,8 @@ fn positions(draft: &mut Draft, attitudes: &[Option<Attitude>], six: bool) -> Ve
     attitudes.iter().map(id).collect()
 }
 
-fn arm(draft: &mut Draft, mounting: usize, radius: Option<f64>) {
+fn arm(draft: &mut Draft, mounting: usize, radius: Option<f64>, no_arm: Option<&str>) {
+    let what = "radius of the reference point by the drawing, m";
     match radius {
         Some(radius) => {
             draft.guess(
@@ -332,7 +333,7 @@ fn arm(draft: &mut Draft, mounting: usize, radius: Option<f64>) {
         None => draft.fill_in(
             &format!("[[mounting]] {} arm", mounting + 1),
             &format!("arm = [{UNKNOWN}, 0.0, 0.0]"),
-            "radius of the reference point by the drawing, m",
+            &no_arm.map_or(what.to_owned(), |why| format!("{what}; {why}")),
         ),
     }
 }

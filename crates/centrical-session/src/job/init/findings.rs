@@ -21,6 +21,8 @@ pub(super) struct Findings {
     /// Of each mounting: the attitude, and the radius [m].
     pub attitudes: Vec<Option<Attitude>>,
     pub radii: Vec<Option<f64>>,
+    /// Why no radius is of an arm, if there are any.
+    pub no_arm: Option<String>,
     pub schedules: Vec<Vec<Set>>,
 }
 
@@ -43,8 +45,13 @@ impl Findings {
         let in_si = in_si(&self::extremes(mountings), &unit);
         let attitudes: Vec<Option<Attitude>> =
             in_si.iter().map(|e| e.as_ref().and_then(|e| attitude(&e.rest, &e.fast))).collect();
-        let radii = seats(&attitudes, &radii(&in_si));
-        Ok(Self { unit, attitudes, radii, schedules: schedules(mountings) })
+        let mut seen = radii(&in_si);
+        let no_arm = median(&seen).filter(|radius| !is_arm(*radius)).map(|radius| no_arm(radius, mountings));
+        if no_arm.is_some() {
+            seen.fill(None);
+        }
+        let radii = seats(&attitudes, &seen);
+        Ok(Self { unit, attitudes, radii, no_arm, schedules: schedules(mountings) })
     }
 }
 
@@ -60,16 +67,36 @@ fn radii(in_si: &[Option<Extremes>]) -> Vec<Option<f64>> {
     in_si.iter().map(|e| e.as_ref().map(Extremes::radius)).collect()
 }
 
-/// The unit in which the median radius is nearest to the usual one, from radii of speeds that count as in rad/s.
+/// The unit in which the median radius is nearest to the usual one, if it is one of an arm then, from radii of speeds that count as in rad/s.
 fn speed_unit(radii: &[Option<f64>]) -> Option<&'static str> {
+    let median = median(radii)?;
+    let radius = |unit: &str| median / Dimension::Speed.factor(unit).unwrap_or(f64::NAN).powi(2);
+    let farness = |unit: &str| (radius(unit) / USUAL_RADIUS).ln().abs();
+    UNITS.into_iter().min_by(|a, b| farness(a).total_cmp(&farness(b))).filter(|unit| is_arm(radius(unit)))
+}
+
+/// The median of radii that are above zero.
+fn median(radii: &[Option<f64>]) -> Option<f64> {
     let mut radii: Vec<f64> = radii.iter().copied().flatten().filter(|radius| *radius > 0.0).collect();
     radii.sort_by(f64::total_cmp);
-    let median = *radii.get(radii.len() / 2)?;
-    let farness = |unit: &str| {
-        let factor = Dimension::Speed.factor(unit).unwrap_or(f64::NAN);
-        (median / factor.powi(2) / USUAL_RADIUS).ln().abs()
-    };
-    UNITS.into_iter().min_by(|a, b| farness(a).total_cmp(&farness(b)))
+    radii.get(radii.len() / 2).copied()
+}
+
+/// Whether a radius is one of an arm.
+fn is_arm(radius: f64) -> bool {
+    (USUAL_RADIUS / 10.0..=USUAL_RADIUS * 10.0).contains(&radius)
+}
+
+/// Why a radius of speeds in the unit of the telemetry is not one of an arm: another unit may make it one.
+fn no_arm(radius: f64, mountings: &[SeenMounting]) -> String {
+    let telemetry = mountings.iter().find_map(|mounting| mounting.group.telemetry.as_ref());
+    let stated = telemetry.and_then(|file| file.speed.as_ref()?.unit).unwrap_or("rad/s");
+    let in_rad = radius * Dimension::Speed.factor(stated).unwrap_or(1.0).powi(2);
+    let other = speed_unit(&[Some(in_rad)]).map_or(String::new(), |unit| {
+        let own = in_rad / Dimension::Speed.factor(unit).unwrap_or(1.0).powi(2);
+        format!("; with speeds in {unit} it would be {own:.3} m")
+    });
+    format!("readings and speeds in {stated} make {radius:.3} m, which is no arm{other}")
 }
 
 /// A direction along an axis: which, from 0, and its sign.
