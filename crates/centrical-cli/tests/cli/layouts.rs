@@ -1,6 +1,7 @@
 //! Layouts that other programs write: `init` finds the columns, and the session calibrates to the numbers of the example.
 
 use std::f64::consts::PI;
+use std::fmt::Write;
 use std::fs;
 use std::path::Path;
 
@@ -201,4 +202,34 @@ fn an_order_and_an_arm_that_no_file_shows() {
     let arm = "arm = [\"?\", 0.0, 0.0]  # FILL IN: radius of the reference point by the drawing, m; readings and speeds in rpm make 0.0";
     assert_eq!(drafted.matches(arm).count(), 12, "{drafted}");
     assert!(drafted.contains("which is no arm; with speeds in deg/s it would be 0."), "{drafted}");
+}
+
+/// All mountings in one record are no mounting.
+#[test]
+fn one_record_of_several_mountings_is_to_be_split() {
+    let copy = Copy::new();
+    let folder = copy.session().join("long");
+    fs::create_dir(&folder).unwrap();
+    for (part, header) in [("records", "t,f1,f2,f3"), ("telemetry", "t,omega")] {
+        let mut long = format!("{header}\n");
+        for (k, mounting) in ["m01.csv", "m03.csv", "m05.csv"].iter().enumerate() {
+            let text = fs::read_to_string(copy.session().join(part).join(mounting)).unwrap();
+            for line in text.lines().skip(1) {
+                let (t, values) = line.split_once(',').unwrap();
+                let t: f64 = t.parse().unwrap();
+                writeln!(long, "{},{values}", t + 200.0 * k as f64).unwrap();
+            }
+        }
+        fs::write(folder.join(format!("{part}.csv")), long).unwrap();
+    }
+    for inputs in [&["records.csv", "telemetry.csv"][..], &["records.csv"]] {
+        let inputs: Vec<String> = inputs.iter().map(|input| folder.join(input).display().to_string()).collect();
+        let arguments: Vec<&str> = std::iter::once("init").chain(inputs.iter().map(String::as_str)).collect();
+        let output = copy.run(&arguments);
+        let message = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(2), "{message}");
+        let expected = "records.csv: found several mountings: the arm pulls in 3 directions of the unit, one after the other, expected a \
+                        file for each mounting, and one of its telemetry: split them at rest, at about 163 s, 36";
+        assert!(message.contains(expected), "{message}");
+    }
 }

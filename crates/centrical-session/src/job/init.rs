@@ -11,6 +11,7 @@ mod experiment_text;
 mod file_roles;
 mod findings;
 mod output_unit;
+mod several_mountings;
 mod sighting;
 mod tumbled;
 
@@ -27,7 +28,7 @@ use crate::error::{Error, Place};
 /// Drafts an experiment file. `progress` is asked while records are read, with none done.
 ///
 /// # Errors
-/// [`Error`] when a file cannot be read, when none is a record, when the experiment file is there, or when the tumble is of another unit of readings;
+/// [`Error`] when a file cannot be read, when none is a record, when one is of several mountings, when the experiment file is there, or when the tumble is of another unit of readings;
 /// [`Error::Stopped`].
 pub fn init(request: &InitRequest, progress: OnProgress) -> Result<Draft, Error> {
     request.refuse_existing()?;
@@ -41,6 +42,7 @@ pub fn init(request: &InitRequest, progress: OnProgress) -> Result<Draft, Error>
         return Err(Error::content(inputs, Place::Whole, "no record", expected));
     }
     let mountings = groups.into_iter().map(|group| sighting::sight(group, progress)).collect::<Result<Vec<_>, _>>()?;
+    mountings.iter().try_for_each(several_mountings::refuse)?;
     let tumbled = request.tumble.as_deref().map(Tumbled::read).transpose()?;
     experiment_text::draft(mountings, tumbled.as_ref(), &unused, request)
 }
