@@ -72,26 +72,32 @@ fn write_matlab(path: &Path, variables: &[Vec<u8>]) {
     fs::write(path, file).unwrap();
 }
 
-/// A vector of times beside a matrix of readings, and a sampling rate.
+/// A vector of times beside a matrix of readings, upright or on its side, and a sampling rate.
 #[test]
 fn a_matrix_beside_a_vector() {
-    let copy = Copy::new();
-    rewrite(&copy, "mat", |path, rows| {
-        let [t, f] = [0..1, 1..rows[0].len()].map(|columns| rows.iter().map(|row| &row[columns.clone()]).collect());
-        let (t, f): (Vec<&[f64]>, Vec<&[f64]>) = (t, f);
-        let name = if f[0].len() == 1 { "omega" } else { "f" };
-        write_matlab(path, &[matrix("fs", &[&[100.0]]), matrix("t", &t), matrix(name, &f)]);
-    });
-    let names = "f = [\"f(:,1)\", \"f(:,2)\", \"f(:,3)\"]";
-    assert_lines(&draft(&copy, &["records", "telemetry"]), &["time = \"t\"  # FOUND", &format!("{names}  # FOUND")]);
-    let refused = copy.calibrate(&[]);
-    let message = String::from_utf8_lossy(&refused.stderr).into_owned();
-    assert!(
-        message.contains("f1: found columns \"fs, t, f(:,1) to f(:,3)\", expected a column of this name"),
-        "{message}"
-    );
-    copy.edit("experiment.toml", |text| text.replace("f = [\"f1\", \"f2\", \"f3\"]", names));
-    assert_eq!(parameters(&copy), parameters(&Copy::new()));
+    let expected = parameters(&Copy::new());
+    for (is_on_side, listed) in [(false, "f(:,1) to f(:,3)"), (true, "f(1,:), f(2,:), f(3,:)")] {
+        let copy = Copy::new();
+        rewrite(&copy, "mat", |path, rows| {
+            let [t, f] = [0..1, 1..rows[0].len()].map(|columns| rows.iter().map(|row| &row[columns.clone()]).collect());
+            let (t, f): (Vec<&[f64]>, Vec<&[f64]>) = (t, f);
+            let turned: Vec<Vec<f64>> = (0..f[0].len()).map(|j| f.iter().map(|row| row[j]).collect()).collect();
+            let turned: Vec<&[f64]> = turned.iter().map(Vec::as_slice).collect();
+            let name = if f[0].len() == 1 { "omega" } else { "f" };
+            let f = matrix(name, if is_on_side { &turned } else { &f });
+            write_matlab(path, &[matrix("fs", &[&[100.0]]), matrix("t", &t), f]);
+        });
+        let of_axis = |axis: u8| if is_on_side { format!("\"f({axis},:)\"") } else { format!("\"f(:,{axis})\"") };
+        let names = format!("f = [{}]", [1, 2, 3].map(of_axis).join(", "));
+        let found = format!("{names}  # FOUND");
+        assert_lines(&draft(&copy, &["records", "telemetry"]), &["time = \"t\"  # FOUND", &found]);
+        let refused = copy.calibrate(&[]);
+        let message = String::from_utf8_lossy(&refused.stderr).into_owned();
+        let missing = format!("f1: found columns \"fs, t, {listed}\", expected a column of this name");
+        assert!(message.contains(&missing), "{message}");
+        copy.edit("experiment.toml", |text| text.replace("f = [\"f1\", \"f2\", \"f3\"]", &names));
+        assert_eq!(parameters(&copy), expected);
+    }
 }
 
 /// Rows as a data logger writes them that begins 30 s before midnight, the date and the time divided so.

@@ -90,7 +90,7 @@ pub(super) enum ScalarKind {
 
 /// The wanted columns of arrays, in the order of the fields.
 ///
-/// A name is that of an array of one column, or of a column of an array ([`name_in_matrix`] where it has none); a number
+/// A name is that of an array of one column, or of a column of an array (as in `f(:,2)` where it has none); a number
 /// counts the columns of the only array.
 pub(super) fn columns(source: &Source, arrays: &[Array], fields: &[Field]) -> Result<Vec<Column>, Error> {
     fields.iter().map(|field| column(source, find(source.name(), arrays, field)?, field)).collect()
@@ -117,10 +117,22 @@ pub(super) fn names(source: &Source, arrays: &[Array]) -> Result<Vec<ColumnName>
     Ok(arrays.iter().filter(|array| array.rows > 1 || !has_rows).flat_map(of_array).collect())
 }
 
+/// Columns of a record or of telemetry at most.
+const MOST_COLUMNS: u64 = 1000;
+
+/// Whether a matrix lies on its side: its rows are columns of a table then, and have names as in `f(2,:)`.
+pub(super) fn lies_on_side(rows: u64, columns: u64) -> bool {
+    (2..=MOST_COLUMNS).contains(&rows) && columns > MOST_COLUMNS
+}
+
+/// The name of a row of a matrix, as MATLAB writes it, from 1.
+pub(super) fn name_of_row(matrix: &str, number: u64) -> String {
+    if matrix.is_empty() { String::new() } else { format!("{matrix}({number},:)") }
+}
+
 /// The names of the columns of a matrix, unless it is of more columns than a record or telemetry has.
 pub(super) fn column_names(matrix: &str, columns: usize) -> Vec<ColumnName> {
-    const MOST: usize = 1000;
-    let columns = if columns > MOST { 0 } else { columns };
+    let columns = if columns as u64 > MOST_COLUMNS { 0 } else { columns };
     (1..=columns).map(|number| ColumnName::Name(name_in_matrix(matrix, number))).collect()
 }
 
@@ -129,11 +141,23 @@ fn name_in_matrix(matrix: &str, number: usize) -> String {
     format!("{matrix}(:,{number})")
 }
 
-/// The matrix, and the number of the column in it, of such a name; blanks between its signs do not count.
-pub(super) fn matrix_of(name: &str) -> Option<(&str, usize)> {
+/// A column or a row of a matrix, counted from 1.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Line {
+    Column(usize),
+    Row(usize),
+}
+
+/// The matrix and the line in it of such a name; blanks between its signs do not count.
+pub(super) fn matrix_of(name: &str) -> Option<(&str, Line)> {
     let (matrix, place) = name.trim_end().strip_suffix(')')?.rsplit_once('(')?;
-    let (all, number) = place.split_once(',')?;
-    (all.trim() == ":").then_some((matrix.trim_end(), number.trim().parse().ok()?))
+    let (row, column) = place.split_once(',')?;
+    let line = match (row.trim(), column.trim()) {
+        (":", number) => Line::Column(number.parse().ok()?),
+        (number, ":") => Line::Row(number.parse().ok()?),
+        _ => return None,
+    };
+    Some((matrix.trim_end(), line))
 }
 
 /// The array and the column in it that a field asks for.
@@ -149,7 +173,8 @@ fn find<'a>(file: &Path, arrays: &'a [Array], field: &Field) -> Result<(&'a Arra
             let places = |array: &'a Array| {
                 let is_whole = array.name == *name && array.columns.len() == 1;
                 array.columns.iter().zip(1..).filter_map(move |(column, number)| {
-                    let is_in_matrix = column.name.is_empty() && in_matrix == Some((&*array.name, number));
+                    let is_in_matrix =
+                        column.name.is_empty() && in_matrix == Some((&*array.name, Line::Column(number)));
                     (is_whole || column.name == *name || is_in_matrix).then_some((array, column))
                 })
             };
@@ -356,9 +381,10 @@ mod tests {
     #[test]
     fn columns_of_a_matrix_have_names() {
         for name in ["f(:,2)", "f(:, 2)", "f (:,2) "] {
-            assert_eq!(matrix_of(name), Some(("f", 2)), "{name}");
+            assert_eq!(matrix_of(name), Some(("f", Line::Column(2))), "{name}");
         }
-        for name in ["f", "f(2)", "f(1,2)", "f(:,x)", "f(:,2", "acc [g]"] {
+        assert_eq!(matrix_of("f(2,:)"), Some(("f", Line::Row(2))));
+        for name in ["f", "f(2)", "f(:,:)", "f(1,2)", "f(:,x)", "f(:,2", "acc [g]"] {
             assert_eq!(matrix_of(name), None, "{name}");
         }
         let scalar = Scalar { kind: ScalarKind::Float, size: 8, big_endian: false };

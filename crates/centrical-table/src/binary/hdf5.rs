@@ -4,7 +4,7 @@ use std::path::Path;
 
 use hdf5_pure::{ChunkIndex, Dataset, Error as HdfError, File, FormatError, ReadSeekSource};
 
-use super::arrays::{column_names, matrix_of};
+use super::arrays::{Line, column_names, lies_on_side, matrix_of, name_of_row};
 use super::catch_panic::catch_panic;
 use super::columnar::Column;
 use crate::column::{ColumnName, Field, ROWS};
@@ -30,21 +30,41 @@ pub(super) fn names(source: &Source, by_columns: bool) -> Result<Vec<ColumnName>
     let datasets = datasets.map_err(|e| damaged(source.name(), Place::Whole, e.as_ref()))?;
     let of_dataset = |name: &String| -> Vec<ColumnName> {
         let shape = catch_panic(|| hdf.dataset(name)?.shape()).unwrap_or_default();
-        match rows_and_columns(&shape, by_columns) {
-            Some((_, columns @ 2..)) => column_names(name, usize::try_from(columns).unwrap_or(usize::MAX)),
+        match Table::of(&shape, by_columns) {
+            Some(Table { columns: columns @ 2.., is_on_side: true, .. }) => {
+                (1..=columns).map(|number| ColumnName::Name(name_of_row(name, number))).collect()
+            }
+            Some(Table { columns: columns @ 2.., .. }) => {
+                column_names(name, usize::try_from(columns).unwrap_or(usize::MAX))
+            }
             _ => vec![ColumnName::Name(name.clone())],
         }
     };
     Ok(datasets.iter().flat_map(of_dataset).collect())
 }
 
-/// Rows and columns of a vector or a matrix of this shape.
-fn rows_and_columns(shape: &[u64], by_columns: bool) -> Option<(u64, u64)> {
-    match *shape {
-        [rows] | [1, rows] | [rows, 1] => Some((rows, 1)),
-        [columns, rows] if by_columns => Some((rows, columns)),
-        [rows, columns] => Some((rows, columns)),
-        _ => None,
+/// A vector or a matrix as a table.
+struct Table {
+    rows: u64,
+    columns: u64,
+    /// Whether the file has its numbers column by column.
+    by_columns: bool,
+    /// Whether its columns are the rows of the matrix.
+    is_on_side: bool,
+}
+
+impl Table {
+    /// Of this shape.
+    fn of(shape: &[u64], by_columns: bool) -> Option<Self> {
+        let (rows, columns) = match *shape {
+            [rows] | [1, rows] | [rows, 1] => (rows, 1),
+            [columns, rows] if by_columns => (rows, columns),
+            [rows, columns] => (rows, columns),
+            _ => return None,
+        };
+        let is_on_side = lies_on_side(rows, columns);
+        let (rows, columns) = if is_on_side { (columns, rows) } else { (rows, columns) };
+        Some(Self { rows, columns, by_columns: by_columns != is_on_side, is_on_side })
     }
 }
 
@@ -59,7 +79,7 @@ fn damaged(file: &Path, place: Place, error: Option<&HdfError>) -> Error {
     Error::content(file, place, format!("damaged HDF5 ({why})"), "a whole HDF5 file")
 }
 
-/// One column: a vector by the path of its dataset, a column of a matrix by [`column_names`], or of the only dataset by
+/// One column: a vector by the path of its dataset, a line of a matrix by [`matrix_of`], or a column of the only dataset by
 /// its number.
 fn column(source: &Source, hdf: &File, field: &Field, by_columns: bool, most: u64) -> Result<Column, Error> {
     let (file, place) = (source.name(), || Place::Column(field.name.to_string()));
@@ -68,19 +88,22 @@ fn column(source: &Source, hdf: &File, field: &Field, by_columns: bool, most: u6
     let wrong = |found: String, expected: &str| Err(Error::content(file, place(), found, expected));
     let names = catch_panic(|| hdf.root().datasets()).map_err(&damaged)?;
     let found = || format!("datasets {}", quoted(names.join(", ").as_bytes()));
-    let (name, number) = match (&field.name, names.as_slice()) {
-        (ColumnName::Name(name), _) => matrix_of(name).map_or((&**name, None), |(name, number)| (name, Some(number))),
-        (ColumnName::Number(number), [only]) => (&**only, Some(*number)),
+    let (name, line) = match (&field.name, names.as_slice()) {
+        (ColumnName::Name(name), _) => matrix_of(name).map_or((&**name, None), |(name, line)| (name, Some(line))),
+        (ColumnName::Number(number), [only]) => (&**only, Some(Line::Column(*number))),
         _ => return wrong(found(), "one dataset, or [columns] by name"),
     };
     let Ok(dataset) = catch_panic(|| hdf.dataset(name)) else { return wrong(found(), "a dataset of this name") };
     let shape = catch_panic(|| dataset.shape()).map_err(&damaged)?;
-    let Some((rows, columns)) = rows_and_columns(&shape, by_columns) else {
+    let Some(Table { rows, columns, by_columns, is_on_side }) = Table::of(&shape, by_columns) else {
         return wrong(format!("an array of shape {shape:?}"), "a vector or a matrix");
     };
-    let is_asked = number.map_or(columns == 1, |number| (1..=columns).contains(&(number as u64)));
-    let number = number.unwrap_or(1);
-    if !is_asked || columns > AT_ONCE || rows > most {
+    let (number, is_asked) = match (line, &field.name) {
+        (None, _) => (1, columns == 1),
+        (Some(Line::Row(number)), _) => (number, is_on_side),
+        (Some(Line::Column(number)), name) => (number, !is_on_side || matches!(name, ColumnName::Number(_))),
+    };
+    if !is_asked || !(1..=columns).contains(&(number as u64)) || columns > AT_ONCE || rows > most {
         let expected = "a vector by name, or a column of a matrix by number, or by name as in f(:,2)";
         return wrong(format!("an array of shape {shape:?}"), expected);
     }

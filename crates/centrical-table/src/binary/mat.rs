@@ -7,7 +7,7 @@
 use std::io::{self, Read};
 
 use super::arrays;
-use super::arrays::{Array, ArrayColumn, Bytes, Packing, Scalar, ScalarKind};
+use super::arrays::{Array, ArrayColumn, Bytes, Packing, Scalar, ScalarKind, lies_on_side, name_of_row};
 use super::columnar::Column;
 use crate::column::{ColumnName, Field};
 use crate::error::{Error, Place};
@@ -89,13 +89,18 @@ fn array(source: &Source, bytes: Bytes, big_endian: bool) -> io::Result<Option<A
     let Some(scalar) = scalar(numbers.kind, big_endian) else { return Ok(None) };
     let [rows, columns] = [&dimensions[..4], &dimensions[4..]].map(|d| u64::from(word(d, big_endian)));
     let (rows, columns) = if rows == 1 || columns == 1 { (rows * columns, 1) } else { (rows, columns) };
-    if columns > MOST {
-        return Ok(None);
-    }
-    let stride = scalar.size as u64;
-    let place = |j| ArrayColumn { name: String::new(), start: rows.saturating_mul(stride * j), scalar };
+    let size = scalar.size as u64;
     let bytes = Bytes { skip: bytes.skip + stream.read, ..bytes };
-    Ok(Some(Array { name, bytes, rows, stride, columns: (0..columns).map(place).collect(), halves: Vec::new() }))
+    let (rows, stride, places): (u64, u64, Vec<ArrayColumn>) = if lies_on_side(rows, columns) {
+        let place = |j| ArrayColumn { name: name_of_row(&name, j + 1), start: size * j, scalar };
+        (columns, size * rows, (0..rows).map(place).collect())
+    } else if columns > MOST {
+        return Ok(None);
+    } else {
+        let place = |j| ArrayColumn { name: String::new(), start: rows.saturating_mul(size * j), scalar };
+        (rows, size, (0..columns).map(place).collect())
+    };
+    Ok(Some(Array { name, bytes, rows, stride, columns: places, halves: Vec::new() }))
 }
 
 /// The numbers of an element of this type.

@@ -6,7 +6,7 @@
 use std::io::{self, Read};
 
 use super::arrays;
-use super::arrays::{Array, ArrayColumn, Bytes, Packing, Scalar, ScalarKind};
+use super::arrays::{Array, ArrayColumn, Bytes, Packing, Scalar, ScalarKind, lies_on_side, name_of_row};
 use super::columnar::Column;
 use super::npy_literal::Literal;
 use crate::column::{ColumnName, Field};
@@ -150,7 +150,14 @@ impl Shape {
                 }
             }
         }
-        (columns <= LONGEST_HEADER as u64).then_some(Self { rows, columns, by_columns, numbers, halves, size })
+        (columns <= LONGEST_HEADER as u64 || lies_on_side(rows, columns)).then_some(Self {
+            rows,
+            columns,
+            by_columns,
+            numbers,
+            halves,
+            size,
+        })
     }
 
     fn array(self, name: &str, bytes: Bytes) -> Array {
@@ -159,16 +166,19 @@ impl Shape {
         } else {
             (self.size.saturating_mul(self.columns), self.size)
         };
+        let is_on_side = lies_on_side(self.rows, self.columns);
+        let (rows, stride, columns, step) =
+            if is_on_side { (self.columns, column, self.rows, row) } else { (self.rows, row, self.columns, column) };
         let numbers = &self.numbers;
         let place = |j: u64| {
-            numbers.iter().map(move |(name, start, scalar)| ArrayColumn {
-                name: name.clone(),
-                start: column.saturating_mul(j).saturating_add(*start),
+            numbers.iter().map(move |(own, start, scalar)| ArrayColumn {
+                name: if is_on_side && own.is_empty() { name_of_row(name, j + 1) } else { own.clone() },
+                start: step.saturating_mul(j).saturating_add(*start),
                 scalar: *scalar,
             })
         };
-        let columns = (0..self.columns).flat_map(place).collect();
-        Array { name: name.to_owned(), bytes, rows: self.rows, stride: row, columns, halves: self.halves }
+        let columns = (0..columns).flat_map(place).collect();
+        Array { name: name.to_owned(), bytes, rows, stride, columns, halves: self.halves }
     }
 }
 

@@ -164,6 +164,41 @@ fn hdf5_is_a_feature() {
 }
 
 #[test]
+fn columns_of_matrices_by_name() {
+    let of = |matrix: &str| [1, 2, 3, 4].map(|number| ColumnName::Name(format!("{matrix}(:,{number})")));
+    for (name, matrix) in [("matrix.mat", "data"), ("matrix.npz", "arr_0")] {
+        assert_eq!(read_record(&data(name), &of(matrix)).unwrap(), reference(), "{name}");
+    }
+    #[cfg(feature = "hdf5")]
+    assert_eq!(read_record(&data("matrix.h5"), &of("data")).unwrap(), reference());
+}
+
+/// A matrix with few rows and thousands of columns is a table on its side.
+#[test]
+fn matrices_on_their_side() {
+    const ROWS: u32 = 1200;
+    let value = |row: u32, column: u32| f64::from(row + ROWS * column);
+    let expected = [0, 1, 2, 3].map(|column| (0..ROWS).map(|row| value(row, column)).collect::<Vec<f64>>());
+    let folder = tempfile::tempdir().unwrap();
+    for by_columns in [false, true] {
+        let truth = if by_columns { "True" } else { "False" };
+        let header = format!("{{'descr': '<f8', 'fortran_order': {truth}, 'shape': (4, {ROWS}), }}\n");
+        let mut file = b"\x93NUMPY\x01\x00".to_vec();
+        file.extend_from_slice(&u16::try_from(header.len()).unwrap().to_le_bytes());
+        file.extend_from_slice(header.as_bytes());
+        let places: Vec<(u32, u32)> = if by_columns {
+            (0..ROWS).flat_map(|row| (0..4).map(move |column| (row, column))).collect()
+        } else {
+            (0..4).flat_map(|column| (0..ROWS).map(move |row| (row, column))).collect()
+        };
+        file.extend(places.iter().flat_map(|(row, column)| value(*row, *column).to_le_bytes()));
+        let path = folder.path().join("side.npy");
+        fs::write(&path, file).unwrap();
+        assert_eq!(read_record(&path, &numbered()).unwrap(), expected, "{truth}");
+    }
+}
+
+#[test]
 fn arrays_that_are_no_record() {
     let cases = [
         (
