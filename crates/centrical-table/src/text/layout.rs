@@ -94,9 +94,10 @@ impl Layout {
 
     /// Reads the wanted numbers of a line into `row`, in the order of the fields.
     pub fn row(&self, line: &[u8], row: &mut [f64], fields: &[Field]) -> Result<(), Fault> {
-        match self.plain_row(line, row) {
-            Some(_) => Ok(()),
-            None => self.any_row(line, row, fields),
+        match (self.plain_row(line, row), self.date) {
+            (Some(_), _) => Ok(()),
+            (None, None) => self.any_row(line, row, fields),
+            (None, Some(date)) => self.dated_row(date, line, row, fields),
         }
     }
 
@@ -173,11 +174,11 @@ impl Layout {
 
     /// The first field of a line, if it is a stamp.
     pub fn stamp<'a>(&self, line: &'a [u8]) -> Option<Cow<'a, [u8]>> {
-        let text = self.wanted_texts(line)?.into_iter().next()?;
-        match self.date.filter(|date| date.field == 0) {
-            Some(date) => Some(Cow::Owned(stamp::joined(self.texts(line).ok()?.get(date.place)?, &text))),
-            None => number(&text).is_none().then_some(text),
+        if let Some(date) = self.date.filter(|date| date.field == 0) {
+            return self.dated_stamp(date, line).map(Cow::Owned);
         }
+        let text = self.wanted_texts(line)?.into_iter().next()?;
+        number(&text).is_none().then_some(text)
     }
 
     /// The row of any line: quotes, blanks, decimal commas, empty fields.
@@ -189,11 +190,7 @@ impl Layout {
             let field;
             (field, rest) = self.delimiter.split(text)?;
             if let Some(k) = wanted {
-                let value = match self.date.filter(|date| date.field == *k) {
-                    Some(date) => self.dated_value(date, field, line, &fields[*k]),
-                    None => fields[*k].value(field),
-                };
-                row[*k] = value.map_err(|fault| self.header_again(line, fields).unwrap_or(fault))?;
+                row[*k] = fields[*k].value(field).map_err(|fault| self.header_again(line, fields).unwrap_or(fault))?;
             }
         }
         // Some loggers end every row, but not the header, with a delimiter.
@@ -203,13 +200,21 @@ impl Layout {
         }
     }
 
-    /// The seconds of a time of the day on the date in the same line.
-    fn dated_value(&self, date: DateColumn, time: &[u8], line: &[u8], field: &Field) -> Result<f64, Fault> {
-        let texts = self.texts(line)?;
-        let date = texts.get(date.place).map_or(&b""[..], |text| text);
-        let stamp = stamp::joined(date, &unquoted(time));
+    /// The row of any line with a date: its time of the day is on that date.
+    fn dated_row(&self, date: DateColumn, line: &[u8], row: &mut [f64], fields: &[Field]) -> Result<(), Fault> {
+        self.any_row(line, row, fields)?;
+        let stamp = self.dated_stamp(date, line).unwrap_or_default();
         let expected = "a date and a time of the day, such as 2026-10-05 and 10:00:00.25";
-        stamp::dated_seconds(&stamp).ok_or_else(|| field.fault(quoted(&stamp), expected))
+        let wrong = || fields[date.field].fault(quoted(&stamp), expected);
+        row[date.field] = stamp::dated_seconds(&stamp).ok_or_else(wrong)?;
+        Ok(())
+    }
+
+    /// The date and the time of the day of a line as one stamp.
+    fn dated_stamp(&self, date: DateColumn, line: &[u8]) -> Option<Vec<u8>> {
+        let texts = self.texts(line).ok()?;
+        let time = self.wanted.iter().position(|own| *own == Some(date.field))?;
+        Some(stamp::joined(texts.get(date.place)?, texts.get(time)?))
     }
 
     /// What is wrong with a line that has the names of the columns in place of their numbers, as where files were put together.
