@@ -126,7 +126,7 @@ impl Shape {
     fn of(header: &Literal) -> Option<Self> {
         let shape = header.get("shape")?.list()?;
         let (rows, columns) = match shape.iter().map(Literal::number).collect::<Option<Vec<_>>>()?.as_slice() {
-            [rows] => (*rows, 1),
+            [rows] | [1, rows] => (*rows, 1),
             [rows, columns] => (*rows, *columns),
             _ => return None,
         };

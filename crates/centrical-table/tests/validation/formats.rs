@@ -196,6 +196,14 @@ fn matrices_on_their_side() {
         fs::write(&path, file).unwrap();
         assert_eq!(read_record(&path, &numbered()).unwrap(), expected, "{truth}");
     }
+    // One row of many numbers is a column.
+    let header = format!("{{'descr': '<f8', 'fortran_order': False, 'shape': (1, {ROWS}), }}\n");
+    let length = u16::try_from(header.len()).unwrap().to_le_bytes();
+    let numbers: Vec<u8> = expected[0].iter().flat_map(|number| number.to_le_bytes()).collect();
+    let path = folder.path().join("row.npy");
+    fs::write(&path, [b"\x93NUMPY\x01\x00".as_slice(), &length, header.as_bytes(), &numbers].concat()).unwrap();
+    let name = centrical_table::binary_columns(&path).unwrap();
+    assert_eq!(name, [ColumnName::Number(1)]);
 }
 
 #[test]
