@@ -253,7 +253,10 @@ fn time(draft: &mut Draft, key: &str, file: &FileColumns, whose: &str, rate: Opt
         draft.fill_in(&format!("[columns] {key}"), &format!("{key} = {{ {entry}rate = {UNKNOWN} }}"), &reason);
     };
     match &file.time {
-        None => rate_of("", "no time"),
+        None => match &file.unread_time {
+            Some(name) => rate_of("", &format!("no time that is read: {name} is neither numbers nor timestamps")),
+            None => rate_of("", "no time"),
+        },
         Some(label) if label.is_count() => {
             rate_of(&format!("column = {}, ", column(&label.column)), "no time but a count of samples");
         }

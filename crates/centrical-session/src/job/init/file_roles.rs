@@ -32,6 +32,8 @@ pub(super) struct FileColumns {
     pub time: Option<Label>,
     pub readings: Vec<Label>,
     pub speed: Option<Label>,
+    /// A column with the name of a time that is not read as one.
+    pub unread_time: Option<String>,
     /// The number of the row.
     count: Option<Label>,
     /// Rates of turn about axes of the unit, until all columns are taken.
@@ -233,6 +235,8 @@ fn of_binary(path: PathBuf, columns: &[ColumnName]) -> FileColumns {
             file.take(label, holds);
         } else if opens(&file.path, &[(column, STAMPS)]) {
             file.take(label, What::Time);
+        } else if what(name, label.unit) == What::Time {
+            file.unread_time = Some(name.clone());
         }
     }
     // The time of a waveform is that of a reading, and asked for by any name.
