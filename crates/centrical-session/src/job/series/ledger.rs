@@ -46,7 +46,8 @@ struct Entry {
 /// A file as it was.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 struct Known {
-    path: PathBuf,
+    /// In letters: one of a name that is not in UTF-8 is not found again, and its session is done anew.
+    path: String,
     size: u64,
     /// Time of change since 1970 [ns].
     modified: u64,
@@ -73,7 +74,7 @@ impl Ledger {
     /// The files of a session that is known.
     pub fn files(&self, session: &Path) -> Vec<&Path> {
         let entry = self.entries.get(&name(session));
-        entry.into_iter().flat_map(|entry| &entry.files).map(|known| known.path.as_path()).collect()
+        entry.into_iter().flat_map(|entry| &entry.files).map(|known| Path::new(&known.path)).collect()
     }
 
     /// Whether a session was done by this program and method from the files that it has now.
@@ -92,7 +93,7 @@ impl Ledger {
         for (session, done) in done {
             let files = done.files.iter().filter_map(|(path, sha256)| {
                 let (size, modified) = stamp(path)?;
-                Some(Known { path: path.clone(), size, modified, sha256: sha256.clone() })
+                Some(Known { path: path.display().to_string(), size, modified, sha256: sha256.clone() })
             });
             let entry = Entry {
                 session: name(session),
@@ -131,10 +132,11 @@ impl Ledger {
 
 impl Known {
     fn is_as_it_was(&self) -> bool {
-        if stamp(&self.path) == Some((self.size, self.modified)) {
+        let path = Path::new(&self.path);
+        if stamp(path) == Some((self.size, self.modified)) {
             return true;
         }
-        let hash = Source::open(&self.path, Input::EXPECTED).map_err(Error::from);
+        let hash = Source::open(path, Input::EXPECTED).map_err(Error::from);
         let hash = hash.and_then(|file| Input::of(Path::new(""), &file, &unwatched));
         hash.is_ok_and(|input| input.sha256 == self.sha256)
     }
