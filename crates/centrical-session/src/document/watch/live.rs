@@ -256,7 +256,7 @@ pub struct LiveRecord {
     pub file: String,
     /// Its size [bytes].
     pub bytes: u64,
-    /// When it changed last.
+    /// When it changed last, by the clock of the watch.
     pub changed: Option<f64>,
     /// Whether it has stopped growing in the midst of its schedule.
     pub frozen: bool,
