@@ -207,9 +207,13 @@ def test_planted_units_are_named(averaged, tmp_path):
             (folder / "experiment.toml").write_text(dated)
     done = fleet.calibrate(tmp_path / "plant", tmp_path / "out")
     assert (done.sessions, done.failed) == (200, 0)
-    found = fleet.summary(tmp_path / "out").units
+    said = fleet.summary(tmp_path / "out")
+    found = said.units["TA-200"]
     assert [unit.unit_serial for unit in found.outlying] == ["0017"]
     assert [(f.kind, f.unit_serial, f.parameter) for f in found.findings] == [("drifts", "0033", "df_2")]
+    for text in (str(said), said.to_html()):
+        assert re.search(r"OUTLYING  TA-200, serial 0017: farthest, in standard deviations: G0_11 [+-]\d+\.\d, ", text)
+        assert "DRIFTS  TA-200, serial 0033: df_2" in text
 
 
 @pytest.mark.parametrize(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import html
 import tempfile
+import warnings
 from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -11,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import pyarrow as pa
+import pyarrow.compute as pc
 import pyarrow.parquet as pq
 
 from .. import _history
@@ -33,8 +35,12 @@ class Summary:
     """How many sessions each is raised against."""
     messages: list[str]
     """Of sessions that failed, the first of them."""
-    units: Any
-    """Outlying and drifting units, as ``centrical history units`` finds them; None where there are too few."""
+    units: dict[str, Any]
+    """By model: outlying and drifting units, as ``centrical history units`` finds them."""
+    not_tested: dict[str, str]
+    """By model: why its units could not be compared."""
+    without_day: list[str]
+    """Calibrations that are left out of the comparison, as their session has no day for a date."""
     seconds: float
     """Time of all calibrations together [s]."""
 
@@ -42,15 +48,10 @@ class Summary:
         lines = [f"{self.sessions} sessions: " + ", ".join(f"{count} {name}" for name, count in self.counts.items())]
         lines += [f"  {name}: {count}" for name, count in sorted(self.objections.items())]
         lines += [f"FAILED  {message}" for message in self.messages]
-        if self.units is not None:
-            lines += [f"OUTLYING  unit {unit.unit_serial}, by {', '.join(unit.most)}" for unit in self.units.outlying[:SHOWN]]
-            found = self.units.findings[:SHOWN]
-            lines += [f"{finding.kind.upper()}  unit {finding.unit_serial}: {finding.parameter}" for finding in found]
-            for station in self.units.content.get("untested", []):
-                where = f" at {station.station}" if station.station else ""
-                lines.append(f"NOT TESTED  {len(station.units)} units{where}: ten are needed to say which is outlying")
-            if self.units.is_tested and not self.units.outlying and not found:
-                lines.append("no unit is outlying, drifts or scatters more than the others")
+        for model, units in self.units.items():
+            lines += _lines(model, units)
+        lines += [f"NOT TESTED  {model}: {why}" for model, why in self.not_tested.items()]
+        lines += [f"NO DAY  {calibration}" for calibration in self.without_day[:SHOWN]]
         lines.append(f"{self.seconds:.0f} s of calibration")
         return "\n".join(lines)
 
@@ -60,6 +61,23 @@ class Summary:
             '<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8"><meta name="color-scheme" content="light dark">'
             f"<title>Fleet</title></head><body><main><h1>Fleet</h1><pre>{html.escape(str(self))}</pre></main></body></html>\n"
         )
+
+
+def _lines(model: str, units: Any) -> list[str]:
+    """What is said of the units of a model."""
+    lines = []
+    for unit in units.outlying[:SHOWN]:
+        most = ", ".join(f"{name} {deviations:+.1f}" for name, deviations in unit.most)
+        lines.append(f"OUTLYING  {model}, serial {unit.unit_serial}: farthest, in standard deviations: {most}")
+    found = units.findings[:SHOWN]
+    lines += [f"{finding.kind.upper()}  {model}, serial {finding.unit_serial}: {finding.parameter}" for finding in found]
+    for station in units.content.get("untested", []):
+        count = f"{len(station.units)} unit{'s' if len(station.units) > 1 else ''}"
+        where = f" at {station.station}" if station.station else ""
+        lines.append(f"NOT TESTED  {model}, {count}{where}: ten are needed to say which is outlying")
+    if units.is_tested and not lines:
+        lines.append(f"{model}: no unit is outlying, drifts or scatters more than the others")
+    return lines
 
 
 def summary(results: str | Path, options: Mapping[str, str] | None = None) -> Summary:
@@ -76,17 +94,26 @@ def summary(results: str | Path, options: Mapping[str, str] | None = None) -> Su
     objections = Counter(name for listed in sessions["objections"].to_pylist() for name in listed or [])
     messages = sorted(message for message in sessions["message"].to_pylist() if message)
     seconds = float(sum(sessions["seconds"].to_pylist()))
-    return Summary(counts.pop("sessions"), counts, dict(objections), messages[:SHOWN], _units(place, parts, store), seconds)
+    models = sorted({model for model in sessions.filter(pc.equal(sessions["status"], "done"))["unit_model"].to_pylist()})
+    return Summary(
+        counts.pop("sessions"), counts, dict(objections), messages[:SHOWN], *_units(place, parts, store, models), seconds
+    )
 
 
-def _units(place: Place, parts: list[str], store: Any) -> Any:
-    with tempfile.TemporaryDirectory() as folder:
+def _units(place: Place, parts: list[str], store: Any, models: list[str]) -> tuple[dict[str, Any], dict[str, str], list[str]]:
+    """By model its units beside each other, or why they are not; and the calibrations without a day."""
+    units: dict[str, Any] = {}
+    not_tested: dict[str, str] = {}
+    with tempfile.TemporaryDirectory() as folder, warnings.catch_warnings(record=True) as without_day:
+        warnings.simplefilter("always")
         rows = Path(folder, "rows")
         rows.mkdir()
         for part in parts:
             (rows / f"{part}.parquet").write_bytes(get(store, f"rows/{part}.parquet"))
-        try:
-            return _history.history(folder, "units")
-        except InputError:
-            # One unit, units of several models, or sessions without a date.
-            return None
+        for model in models:
+            try:
+                units[model] = _history.history(folder, "units", model=model)
+            except InputError as error:
+                # One unit, units in two output units, or sessions without a day.
+                not_tested[model] = str(error).replace(folder, place.url)
+    return units, not_tested, [str(warning.message) for warning in without_day]
