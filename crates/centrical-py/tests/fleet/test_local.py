@@ -1,6 +1,7 @@
 """A fleet on one machine: the same rows as a series, exactly once, whatever becomes of a session or a driver."""
 
 import json
+import multiprocessing
 import os
 import random
 import re
@@ -9,7 +10,7 @@ import signal
 import subprocess
 import sys
 import time
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 
 import centrical as ct
 import numpy as np
@@ -148,6 +149,33 @@ def test_any_executor(fleet_of, tmp_path):
     with ThreadPoolExecutor(2) as executor:
         done = fleet.calibrate(plant, tmp_path / "out", executor, settings=FEW)
     assert done.acceptable == 3
+
+
+def test_processes_of_an_executor_are_spawned(fleet_of, tmp_path):
+    plant = fleet_of(3)
+    with ProcessPoolExecutor(1, mp_context=multiprocessing.get_context("spawn")) as executor:
+        done = fleet.calibrate(plant, tmp_path / "out", executor, settings=FEW)
+    assert done.acceptable == 3
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="a system without fork")
+def test_forked_processes_of_an_executor_are_refused_and_nothing_waits(fleet_of, tmp_path):
+    text = """
+import multiprocessing, sys
+from concurrent.futures import ProcessPoolExecutor
+from centrical import fleet
+
+fleet.calibrate(sys.argv[1], sys.argv[2] + "/threads")
+with ProcessPoolExecutor(1, mp_context=multiprocessing.get_context("fork")) as executor:
+    try:
+        fleet.calibrate(sys.argv[1], sys.argv[2] + "/processes", executor)
+    except RuntimeError as error:
+        print(error)
+"""
+    call = [sys.executable, "-W", "ignore::DeprecationWarning", "-c", text, str(fleet_of(1)), str(tmp_path)]
+    done = subprocess.run(call, capture_output=True, text=True, timeout=60)
+    assert 'use mp_context=multiprocessing.get_context("spawn")' in done.stdout, done.stderr
+    assert not list((tmp_path / "processes").rglob("*.parquet"))
 
 
 def test_another_program_ends_the_run_before_the_first_task(fleet_of, tmp_path, monkeypatch):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import posixpath
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -16,6 +17,22 @@ EXPERIMENT = "experiment.toml"
 
 RETRIES = {"max_retries": 12, "retry_timeout": timedelta(seconds=120)}
 """How long an object store may be unavailable; obstore backs off between attempts."""
+
+
+_owner = 0
+"""The process whose threads of obstore work; 0 before the first of them."""
+
+
+def claim() -> None:
+    """Refuses a forked child of a process that has used obstore: it has none of those threads, and would wait for ever."""
+    global _owner
+    here = os.getpid()
+    _owner = _owner or here
+    if _owner != here:
+        raise RuntimeError(
+            "found a process forked after centrical.fleet had started threads of obstore, expected one of its own: "
+            'use mp_context=multiprocessing.get_context("spawn"), or fork before the first call'
+        )
 
 
 @dataclass(frozen=True)
@@ -64,6 +81,7 @@ class Place:
 
     def open(self, make: bool = False) -> Any:
         """The store of obstore, with this place as its root."""
+        claim()
         if self.folder is not None:
             if make:
                 self.folder.mkdir(parents=True, exist_ok=True)

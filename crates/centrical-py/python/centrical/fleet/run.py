@@ -64,8 +64,8 @@ def calibrate(
 ) -> Done:
     """Calibrates every session of a folder, a bucket's prefix or a manifest into ``out``, a folder or a prefix too.
 
-    ``engine`` is the address of a Dask scheduler, its client, or an executor of :mod:`concurrent.futures`; processes on this
-    machine by default. The same call again makes only what is missing or changed; with ``again`` also the parts with sessions
+    ``engine`` is the address of a Dask scheduler, its client, or an executor of :mod:`concurrent.futures`, whose processes
+    are spawned, not forked; processes on this machine by default. The same call again makes only what is missing or changed; with ``again`` also the parts with sessions
     that failed, for other limits. ``options`` are those of obstore for both places; credentials come from the environment of
     each worker.
     """

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from .. import _native
+from .places import claim
 
 
 class EnvironmentMismatch(RuntimeError):
@@ -60,10 +61,11 @@ def environment() -> Environment:
 
 
 def check(expected: dict[str, str]) -> str:
-    """Refuses to work where the environment is another than the driver's; says where that is.
+    """Refuses to work where the environment is another than the driver's, or obstore has no threads; says where that is.
 
     Machines of another kind have another build: of them the version alone has to agree.
     """
+    claim()
     here = environment()
     same_kind = expected["machine"] == machine()
     if here.version != expected["version"] or (same_kind and here.build != expected["build"]):
