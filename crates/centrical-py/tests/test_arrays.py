@@ -113,6 +113,8 @@ def test_misuse(example, arrays, tmp_path):
     refused(TypeError, r"records\[1\]: found objects", example, {1: (t[:4], np.full((4, 3), "x", object))})
     few = dict(records) | {3: (t[:-1], f)}
     refused(ct.InputError, "mounting 3: columns of different lengths", example, few)
+    message = r"telemetry\[1\]: columns of different lengths: 4 times, 3 speeds"
+    refused(ValueError, message, example, records, telemetry={1: (t[:4], t[:3])})
     empty = dict(records) | {5: (np.empty(0), np.empty((0, 3)))}
     refused(ct.InputError, "mounting 5: record too short", example, empty)
     nan = dict(records) | {2: (np.where(np.arange(len(t)) == 700, np.nan, t), f)}

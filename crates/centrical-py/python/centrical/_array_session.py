@@ -150,6 +150,9 @@ def _mounting(m: int, record: Any, trace: Any, pulses: Any) -> tuple[Any, ...]:
     if trace is not None:
         times, speeds = _pair(f"telemetry[{m}]", trace, "(t, speed)")
         telemetry = [_column(f"telemetry[{m}]", times), _column(f"telemetry[{m}]", speeds)]
+        lengths = [len(column) for column in telemetry]
+        if lengths[0] != lengths[1]:
+            raise ValueError(f"telemetry[{m}]: columns of different lengths: {lengths[0]} times, {lengths[1]} speeds")
         for column in telemetry:
             _refuse_wrong(f"telemetry[{m}]", column, ~np.isfinite(column), "a number")
     return (_column(place, t), columns, telemetry, None if pulses is None else _column(f"pulses[{m}]", pulses))
