@@ -77,6 +77,24 @@ def test_only_what_changed_is_made_again(fleet_of, tmp_path):
     serials = found["unit_serial"].to_pylist()
     assert count == second.sessions == 11
     assert "changed" in serials and "0004" not in serials and "0009" not in serials
+    # Nothing that no row names comes back with `history add NEW STORE/results/*.json`.
+    keys = set(found["key"].to_pylist())
+    assert {file.stem for file in (out / "results").iterdir()} == keys
+    assert {folder.name for folder in (out / "reduced").iterdir()} == keys
+
+
+def test_a_result_stays_as_long_as_a_row_names_it(fleet_of, tmp_path):
+    plant, out = fleet_of(2), tmp_path / "out"
+    fleet.calibrate(plant, out)
+    key = of_session(out, "s001")["key"]
+    kept = tmp_path / "kept.json"
+    shutil.copy(out / "results" / f"{key}.json", kept)
+    ct.add_to_store(tmp_path / "other", kept)
+    for file in (tmp_path / "other" / "rows").iterdir():
+        shutil.copy(file, out / "rows")
+    shutil.rmtree(plant / "s001")
+    fleet.calibrate(plant, out)
+    assert {file.stem for file in (out / "results").iterdir()} == {key, of_session(out, "s000")["key"]}
 
 
 def test_cuts_stay_where_they_are_when_a_session_comes():

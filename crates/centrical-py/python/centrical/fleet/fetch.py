@@ -12,7 +12,7 @@ from typing import Any
 
 import obstore
 
-from .places import Place, Session
+from .places import GONE, Place, Session
 
 PIECE = 16 << 20
 """Bytes of one request [bytes]: larger files come in several at once."""
@@ -64,7 +64,7 @@ def _piece(store: Any, source: str, target: Path, start: int, length: int) -> bo
     """Writes a piece of a file to its place, unless the file vanished."""
     try:
         content = memoryview(obstore.get_range(store, source, start=start, length=length))
-    except (FileNotFoundError, obstore.exceptions.NotFoundError):
+    except GONE:
         return False
     with open(target, "r+b") as output:
         output.seek(start)

@@ -15,6 +15,9 @@ import obstore
 
 EXPERIMENT = "experiment.toml"
 
+GONE = (FileNotFoundError, obstore.exceptions.NotFoundError)
+"""What obstore raises for an object that is not there."""
+
 RETRIES = {"max_retries": 12, "retry_timeout": timedelta(seconds=120)}
 """How long an object store may be unavailable; obstore backs off between attempts."""
 
@@ -106,9 +109,22 @@ def get(store: Any, path: str) -> bytes:
     return bytes(obstore.get(store, path).bytes())
 
 
-def names(store: Any, prefix: str, suffix: str) -> set[str]:
-    """Names of the objects directly below a prefix that end in a suffix, without both."""
-    listed = (object["path"] for batch in obstore.list(store, prefix, chunk_size=1000) for object in batch)
+def remove(store: Any, path: str) -> None:
+    """Removes an object, which another driver may have removed."""
+    try:
+        obstore.delete(store, path)
+    except GONE:
+        pass
+
+
+def paths_below(store: Any, folder: str) -> list[str]:
+    """The objects in a folder and below."""
+    return [item["path"] for batch in obstore.list(store, f"{folder}/", chunk_size=1000) for item in batch]
+
+
+def names(store: Any, folder: str, suffix: str) -> set[str]:
+    """Names of the objects directly in a folder that end in a suffix, without both."""
+    listed = paths_below(store, folder)
     return {posixpath.basename(path).removesuffix(suffix) for path in listed if path.endswith(suffix)}
 
 

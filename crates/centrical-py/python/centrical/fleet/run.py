@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import shutil
 import sys
 import time
 from collections import Counter
@@ -17,8 +18,9 @@ import obstore
 
 from .engines import engine_of
 from .parts import Part, parts_of
-from .places import Place, Session, first_line, get, list_sessions, names, read_manifest
+from .places import GONE, Place, Session, first_line, get, list_sessions, names, paths_below, read_manifest, remove
 from .settings import EnvironmentMismatch, Settings, expected
+from .tables import keys_of
 from .work import Task, make
 
 MANIFEST = "centrical-fleet/1"
@@ -74,17 +76,17 @@ def calibrate(
     place = Place.of(out, options)
     parts = parts_of(_not_in(place, source, listed), settings)
     store = place.open(make=True)
-    there = names(store, "parts/", ".json")
+    there = names(store, "parts", ".json")
     if again:
         there -= _forgotten(store, [part for part in parts if part.name in there])
     due = [part for part in parts if part.name not in there]
     tasks = [Task(part, source, place, settings, expected()) for part in due]
     messages = _run(tasks, engine, progress) if tasks else []
     if messages:
-        counts = _counts(store, [part for part in parts if part.name in names(store, "parts/", ".json")])
+        counts = _counts(store, [part for part in parts if part.name in names(store, "parts", ".json")])
     else:
         counts = _counts(store, parts)
-        _commit(store, source, parts, counts)
+        _commit(store, place, source, parts, counts)
     made = len(due) - len(messages)
     return Done(parts=len(parts), made=made, missing=tuple(messages), **_named(counts))
 
@@ -160,16 +162,21 @@ def _named(counts: Counter[str]) -> dict[str, int]:
     return {name: counts[name] for name in ("sessions", "acceptable", "not_acceptable", "failed")}
 
 
-def _commit(store: Any, source: Place, parts: list[Part], counts: Counter[str]) -> None:
+def _commit(store: Any, out: Place, source: Place, parts: list[Part], counts: Counter[str]) -> None:
     """Removes parts of this source that its sessions have left, and says what the fleet is, in one object."""
     current = {part.name for part in parts}
     present = {session.name for part in parts for session in part.sessions}
-    for name in sorted(names(store, "parts/", ".json") - current):
+    left = []
+    for name in sorted(names(store, "parts", ".json") - current):
         marker = json.loads(get(store, f"parts/{name}.json"))
         if marker["source"] == source.url and present.intersection(marker["sessions"]):
-            # The marker goes last: until then the same command finds what it has to remove.
-            for pattern in PER_PART:
-                obstore.delete(store, pattern.format(name))
+            left.append(name)
+    if left:
+        _remove_results(store, out, left)
+    for name in left:
+        # The marker goes last: until then the same command finds what it has to remove.
+        for pattern in PER_PART:
+            remove(store, pattern.format(name))
     manifest = {
         "schema": MANIFEST,
         "source": source.url,
@@ -181,6 +188,31 @@ def _commit(store: Any, source: Place, parts: list[Part], counts: Counter[str]) 
     name = hashlib.sha256(source.url.encode()).hexdigest()[:16]
     # One manifest a source. It replaces the one before, whole.
     obstore.put(store, f"manifests/{name}.json", text)
+
+
+def _remove_results(store: Any, out: Place, left: list[str]) -> None:
+    """Removes results and reduced sessions of parts that the sessions have left, unless rows of another part name them."""
+    keys: set[str] = set()
+    for name in left:
+        try:
+            keys |= keys_of(get(store, f"sessions/{name}.parquet"))
+        except GONE:
+            # An earlier run removed it, and was killed before it removed the marker.
+            continue
+    sessions = names(store, "sessions", ".parquet")
+    # Rows that `history add` wrote have no table of sessions, which is the smaller one.
+    others = [f"sessions/{name}.parquet" for name in sessions.difference(left)]
+    others += [f"rows/{name}.parquet" for name in names(store, "rows", ".parquet") - sessions.union(left)]
+    with ThreadPoolExecutor(16) as requests:
+        for named in requests.map(lambda path: keys_of(get(store, path)), others):
+            keys -= named
+    for key in sorted(keys):
+        remove(store, f"results/{key}.json")
+        if out.folder is not None:
+            shutil.rmtree(out.folder / "reduced" / key, ignore_errors=True)
+        else:
+            for path in paths_below(store, f"reduced/{key}"):
+                remove(store, path)
 
 
 class _Bar:

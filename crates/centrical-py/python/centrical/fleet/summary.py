@@ -84,7 +84,7 @@ def summary(results: str | Path, options: Mapping[str, str] | None = None) -> Su
     """What a fleet's result, a folder or a bucket's prefix, says."""
     place = Place.of(results, options)
     store = place.open()
-    parts = sorted(names(store, "parts/", ".json"))
+    parts = sorted(names(store, "parts", ".json"))
     if not parts:
         raise FileNotFoundError(f"{results}: found no part, expected the result of centrical-fleet calibrate")
     sessions = pa.concat_tables(

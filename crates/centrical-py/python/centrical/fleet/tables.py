@@ -88,6 +88,11 @@ def parameters_of(rows: pa.Table, outcomes: list[Outcome]) -> pa.Table:
     return pa.table({name: pa.array(values, kind) for (name, values), kind in zip(columns.items(), types)})
 
 
+def keys_of(table: bytes) -> set[str]:
+    """The keys in a table of a part."""
+    return set(pq.read_table(pa.BufferReader(table), columns=["key"])["key"].to_pylist())
+
+
 def counts_of(sessions: pa.Table) -> dict[str, int]:
     """How many sessions there are, and how many of them are acceptable, not acceptable or failed."""
     status, acceptable = sessions["status"].to_pylist(), sessions["acceptable"].to_pylist()
