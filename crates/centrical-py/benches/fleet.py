@@ -100,7 +100,7 @@ def listing(folder):
         session = plant / f"s{number:05}"
         session.mkdir(parents=True)
         (session / "experiment.toml").write_text("")
-    seconds, sessions = timed(lambda: list_sessions(Place.of(plant)))
+    seconds, (sessions, _) = timed(lambda: list_sessions(Place.of(plant)))
     print(f"{len(sessions)} sessions listed in {seconds:.2f} s")
     seconds, parts = timed(lambda: parts_of(sessions, fleet.Settings()))
     print(f"cut into {len(parts)} parts in {seconds:.2f} s")

@@ -14,13 +14,15 @@ from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 
 import centrical as ct
 import numpy as np
+import obstore
 import pytest
 
 from .conftest import CHILD, command, of_session, rows
 
 fleet = pytest.importorskip("centrical.fleet")
 from centrical.fleet.parts import parts_of  # noqa: E402
-from centrical.fleet.places import File, Session  # noqa: E402
+from centrical.fleet.places import File, Place, Session  # noqa: E402
+from centrical.fleet.walk import walk  # noqa: E402
 
 #: Parts of a few sessions.
 FEW = fleet.Settings(part=0.3)
@@ -141,6 +143,36 @@ def test_an_output_among_the_sessions_is_no_session(fleet_of):
         assert fleet.calibrate(plant, plant / "results").sessions == 2
     with pytest.raises(ValueError, match="found the place of the sessions, expected another one"):
         fleet.calibrate(plant, plant)
+
+
+def test_a_link_in_a_circle_and_an_odd_name_are_left_out_alone(fleet_of, tmp_path):
+    plant, other = fleet_of(2), tmp_path / "other"
+    (plant / "s001").rename(other)
+    # Links are followed, those to nothing left out without a word.
+    (plant / "linked").symlink_to(other)
+    (plant / "dangling").symlink_to("nowhere")
+    (plant / "s000" / "up").symlink_to("..")
+    (plant / "itself").symlink_to("itself")
+    (plant / "root").symlink_to(plant.root)
+    shutil.copytree(other, plant / "new\nline")
+    if sys.platform == "linux":
+        os.mkdir(os.fsencode(plant) + b"/caf\xe9")
+    call = command("calibrate", plant, "--out", tmp_path / "out", "--json")
+    done = subprocess.run(call, capture_output=True, text=True)
+    said = json.loads(done.stdout)
+    assert (done.returncode, said["sessions"], said["acceptable"]) == (0, 2, 2)
+    assert len(list((tmp_path / "out" / "results").iterdir())) == 2
+    for path in ("s000/up", "itself", "root"):
+        assert f"centrical-fleet: {plant}/{path}: found a link that leads in a circle" in done.stderr
+    assert f"centrical-fleet: {plant}/new\\nline: found a name with a control character" in done.stderr
+    assert len(said["left_out"]) == len(done.stderr.splitlines()) == (5 if sys.platform == "linux" else 4)
+
+
+def test_files_of_a_folder_are_those_that_obstore_lists(fleet_of):
+    plant = Place.of(fleet_of(3))
+    listed = [(item["path"], item["size"], item["e_tag"]) for batch in obstore.list(plant.open()) for item in batch]
+    # Otherwise all parts would be made again.
+    assert sorted(walk(plant.folder, [])) == sorted(listed)
 
 
 def test_interrupted_within_seconds_and_nothing_is_called_crashed(fleet_of, tmp_path):

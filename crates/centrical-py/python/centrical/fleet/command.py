@@ -52,7 +52,7 @@ def _calibrate(parsed: argparse.Namespace) -> int:
         again=parsed.again,
         progress=not parsed.quiet,
     )
-    for message in done.missing:
+    for message in done.missing + done.left_out:
         print(f"centrical-fleet: {message}", file=sys.stderr)
     if parsed.json:
         print(json.dumps({"schema": "centrical-fleet/1", **asdict(done)}))

@@ -13,6 +13,8 @@ from typing import Any
 
 import obstore
 
+from .walk import walk
+
 EXPERIMENT = "experiment.toml"
 
 GONE = (FileNotFoundError, obstore.exceptions.NotFoundError)
@@ -128,23 +130,27 @@ def names(store: Any, folder: str, suffix: str) -> set[str]:
     return {posixpath.basename(path).removesuffix(suffix) for path in listed if path.endswith(suffix)}
 
 
-def list_sessions(place: Place) -> list[Session]:
+def list_sessions(place: Place) -> tuple[list[Session], list[str]]:
     """The sessions in a place, by name: every folder with an ``experiment.toml``, and the files in it and below.
 
-    One listing of a thousand objects a request; no file is asked for alone.
+    And messages of what is left out. A bucket takes one listing of a thousand objects a request; no file is asked for alone.
     """
     if place.folder is not None and not place.folder.is_dir():
         raise FileNotFoundError(f"{place.url}: found no such folder, expected sessions")
-    files: dict[str, File] = {}
-    for batch in obstore.list(place.open(), chunk_size=1000):
-        for item in batch:
-            stamp = item["e_tag"] or f"{item['size']} {item['last_modified'].isoformat()}"
-            files[item["path"]] = File(item["path"], item["size"], stamp)
-    roots = {posixpath.dirname(path) for path in files if posixpath.basename(path) == EXPERIMENT}
-    return _grouped(files.values(), roots)
+    left_out: list[str] = []
+    files = [File(*found) for found in walk(place.folder, left_out)] if place.folder is not None else _objects(place)
+    roots = {posixpath.dirname(file.path) for file in files if posixpath.basename(file.path) == EXPERIMENT}
+    return _grouped(files, roots), left_out
 
 
-def _grouped(files: Any, roots: set[str]) -> list[Session]:
+def _objects(place: Place) -> list[File]:
+    listed = (item for batch in obstore.list(place.open(), chunk_size=1000) for item in batch)
+    return [
+        File(item["path"], item["size"], item["e_tag"] or f"{item['size']} {item['last_modified'].isoformat()}") for item in listed
+    ]
+
+
+def _grouped(files: list[File], roots: set[str]) -> list[Session]:
     sessions: dict[str, list[File]] = {root: [] for root in roots}
     for file in files:
         folder = posixpath.dirname(file.path)

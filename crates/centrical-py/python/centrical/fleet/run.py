@@ -45,6 +45,8 @@ class Done:
     """Those that this run made; the others were there."""
     missing: tuple[str, ...] = ()
     """Why parts could not be made, a message each. The same command tries them again."""
+    left_out: tuple[str, ...] = ()
+    """Links and names below the place of the sessions that are not looked into, a message each."""
 
     @property
     def exit_code(self) -> int:
@@ -72,7 +74,7 @@ def calibrate(
     each worker.
     """
     settings = settings or Settings()
-    source, listed = _listed(sessions, options)
+    source, listed, left_out = _listed(sessions, options)
     place = Place.of(out, options)
     parts = parts_of(_not_in(place, source, listed), settings)
     store = place.open(make=True)
@@ -88,19 +90,20 @@ def calibrate(
         counts = _counts(store, parts)
         _commit(store, place, source, parts, counts)
     made = len(due) - len(messages)
-    return Done(parts=len(parts), made=made, missing=tuple(messages), **_named(counts))
+    return Done(parts=len(parts), made=made, missing=tuple(messages), left_out=tuple(left_out), **_named(counts))
 
 
-def _listed(sessions: str | Path, options: Mapping[str, str] | None) -> tuple[Place, list[Session]]:
+def _listed(sessions: str | Path, options: Mapping[str, str] | None) -> tuple[Place, list[Session], list[str]]:
+    left_out: list[str] = []
     if "://" not in str(sessions) and Path(sessions).is_file():
         url, listed = read_manifest(Path(sessions))
         place = Place.of(url, options)
     else:
         place = Place.of(sessions, options)
-        listed = list_sessions(place)
+        listed, left_out = list_sessions(place)
     if not listed:
         raise FileNotFoundError(f"{sessions}: found no experiment.toml in it or below, expected sessions")
-    return place, listed
+    return place, listed, left_out
 
 
 def _not_in(out: Place, source: Place, listed: list[Session]) -> list[Session]:
