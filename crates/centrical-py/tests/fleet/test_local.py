@@ -115,6 +115,20 @@ def test_cuts_stay_where_they_are_when_a_session_comes():
 
 
 @pytest.mark.parametrize(
+    "wrong", [{"seconds": -1.0}, {"seconds": float("inf")}, {"part": 0.0}, {"memory": -1}, {"memory": 1 << 64}, {"method": "best"}]
+)
+def test_settings_are_checked(wrong):
+    with pytest.raises(ValueError, match=f"{next(iter(wrong))}: found .*, expected "):
+        fleet.Settings(**wrong)
+
+
+def test_memory_in_which_no_process_starts_is_named(fleet_of, tmp_path):
+    fleet.calibrate(fleet_of(1), tmp_path / "out", settings=fleet.Settings(memory=1 << 26))
+    found = of_session(tmp_path / "out", "s000")["found"]
+    assert found == "crashed: ended with exit code 1 in 0.0625 GiB of memory, twice"
+
+
+@pytest.mark.parametrize(
     ("name", "limits", "found"),
     [
         ("aborts", {}, "crashed: ended by SIGABRT, twice"),
@@ -300,6 +314,11 @@ def test_planted_units_are_named(averaged, tmp_path):
         (["calibrate", "nowhere", "--out", "out"], "nowhere: found no such folder, expected sessions"),
         (["calibrate", ".", "--out", "out"], ".: found no experiment.toml in it or below, expected sessions"),
         (["summary", "."], ".: found no part, expected the result of centrical-fleet calibrate"),
+        (["calibrate", ".", "--out", "out", "--seconds", "0"], "--seconds: found '0', expected a number above 0, at most 1e+06"),
+        (["calibrate", ".", "--out", "out", "--seconds", "nan"], "--seconds: found 'nan', expected a number above 0"),
+        (["calibrate", ".", "--out", "out", "--part", "-3"], "--part: found '-3', expected a number above 0"),
+        (["calibrate", ".", "--out", "out", "--memory", "0"], "--memory: found '0', expected a number above 0"),
+        (["calibrate", ".", "--out", "out", "--memory", "4G"], "--memory: found '4G', expected a number above 0"),
         (["calibrate", ".", "--out", "out", "--option", "endpoint"], "--option: found 'endpoint', expected NAME=VALUE"),
     ],
 )

@@ -15,7 +15,7 @@ from .engines import EngineError
 from .isolation import WorkerTrouble
 from .places import first_line
 from .run import calibrate
-from .settings import EnvironmentMismatch, Settings
+from .settings import METHODS, MOST, EnvironmentMismatch, Settings
 from .summary import summary
 
 EXPECTED = (OSError, ValueError, EngineError, EnvironmentMismatch, WorkerTrouble, obstore.exceptions.BaseError)
@@ -82,6 +82,16 @@ def _options(parsed: argparse.Namespace) -> dict[str, str]:
     return options
 
 
+def _above_zero(text: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        value = float("nan")
+    if not 0.0 < value <= MOST:
+        raise argparse.ArgumentTypeError(f"found {text!r}, expected a number above 0, at most {MOST:g}")
+    return value
+
+
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="centrical-fleet", description="Calibrate thousands of sessions on this machine or on a Dask cluster."
@@ -103,12 +113,12 @@ def _parser() -> argparse.ArgumentParser:
     one.add_argument("sessions", metavar="FOLDER|s3://BUCKET/PREFIX|MANIFEST")
     one.add_argument("--out", required=True, metavar="FOLDER|s3://BUCKET/PREFIX", help="where the store of rows lies or is made")
     one.add_argument("--engine", metavar="tcp://HOST:PORT", help="Dask scheduler [default: processes on this machine]")
-    one.add_argument("--method", choices=["exact", "recursive", "linear"], default="exact", help="how a fit is computed")
+    one.add_argument("--method", choices=METHODS, default="exact", help="how a fit is computed")
     one.add_argument("--again", action="store_true", help="make parts with sessions that failed again, for other limits")
     one.add_argument("--rows-only", action="store_true", help="keep rows of 11 kB alone, without result.json")
-    one.add_argument("--part", type=float, default=30.0, metavar="S", help="work in a part [default: 30]")
-    one.add_argument("--memory", type=float, default=4.0, metavar="GIB", help="memory of the process that calibrates [default: 4]")
-    one.add_argument("--seconds", type=float, default=600.0, metavar="S", help="time for one session [default: 600]")
+    one.add_argument("--part", type=_above_zero, default=30.0, metavar="S", help="work in a part [default: 30]")
+    one.add_argument("--memory", type=_above_zero, default=4.0, metavar="GIB", help="memory of the process that calibrates [default: 4]")
+    one.add_argument("--seconds", type=_above_zero, default=600.0, metavar="S", help="time for one session [default: 600]")
     one.add_argument("-j", "--json", action="store_true", help="print the counts as JSON")
     one.add_argument("-q", "--quiet", action="store_true", help="print nothing but errors")
     one.set_defaults(run=_calibrate)

@@ -110,7 +110,7 @@ class Child:
         except BrokenPipeError:
             line = b""
         if not line.endswith(b"\n"):
-            raise Crashed(_ending(process.wait()))
+            raise Crashed(_ending(process.wait(), self._settings.memory))
         answer: dict[str, str] = json.loads(line)
         return answer
 
@@ -143,7 +143,8 @@ class Child:
         return line
 
 
-def _ending(code: int) -> str:
+def _ending(code: int, memory: int) -> str:
     if code < 0:
         return f"ended by {signal.Signals(-code).name}"
-    return f"ended with exit code {code}"
+    # It did not start, for want of memory as a rule.
+    return f"ended with exit code {code} in {memory / 2**30:.3g} GiB of memory"

@@ -14,6 +14,12 @@ from .. import _native
 from .places import claim
 
 
+METHODS = ("exact", "recursive", "linear")
+
+MOST = 1e6
+"""Seconds of a session and of a part, and GiB of memory, at most: a system refuses much more."""
+
+
 class EnvironmentMismatch(RuntimeError):
     """A worker has another program than the driver, or none."""
 
@@ -36,6 +42,13 @@ class Settings:
     """Time for one session [s]."""
     child: tuple[str, ...] = field(default=(), repr=False)
     """Arguments of the interpreter for the process that calibrates; ``-m centrical.fleet.child`` if empty."""
+
+    def __post_init__(self) -> None:
+        if self.method not in METHODS:
+            raise ValueError(f"method: found {self.method!r}, expected one of {', '.join(METHODS)}")
+        for name, value, most in (("part", self.part, MOST), ("memory", self.memory, MOST * 2**30), ("seconds", self.seconds, MOST)):
+            if not 0 < value <= most:
+                raise ValueError(f"{name}: found {value}, expected a number above 0, at most {most:g}")
 
     def of_result(self) -> dict[str, Any]:
         """The settings that name a part: limits do not change a result."""
