@@ -386,7 +386,7 @@ def all_commands(executable, *of):
     return [command for name in names for command in all_commands(executable, *of, name)]
 
 
-def test_arguments_are_checked():
+def test_arguments_are_checked(result):
     for call in (
         lambda: ct.calibrate(SESSION, method="best"),
         lambda: ct.calibrate(SESSION, hold_out=["four"]),
@@ -398,11 +398,27 @@ def test_arguments_are_checked():
         lambda: ct.noise(SESSION, rate=-1.0),
         lambda: ct.schema("session"),
         lambda: ct.watch(SESSION, "x", interval=-1.0),
+        lambda: ct.montecarlo(SESSION, runs=-5),
+        lambda: ct.montecarlo(SESSION, runs=1 << 64),
+        lambda: ct.montecarlo(SESSION, seed=-1),
+        lambda: ct.simulate("x", "x", seed=-1, out="x"),
+        lambda: ct.series([SESSION], "x", jobs=-2),
+        lambda: result.summary(-1),
+        lambda: ct.control_chart("alpha_1", "x", accepted=-1),
+        lambda: ct.write_pages("x", "x", accepted=-1),
+        lambda: ct.noise([float(n % 7) for n in range(64)], rate=100.0).deviation("oadev", 7),
+        lambda: ct.set_threads(100_000),
         lambda: ct.set_threads(0),
         lambda: ct.set_threads(-1),
-        lambda: ct.set_threads(100_000),
     ):
         with pytest.raises(ValueError, match="found .* expected"):
             call()
+    # The limits of the commands.
+    for wrong in (0.0, -1.0, 1e300, "0 g", "-1e3 m/s^2"):
+        with pytest.raises(ValueError, match="range: found .* expected a number above 0 and up to 1e6 g"):
+            ct.assess(SESSION, range=wrong)
+    for wrong in (0.0, -3.0, 1e7, float("nan")):
+        with pytest.raises(ValueError, match="noise_ug: found .* expected a number above 0 and up to 1e6"):
+            ct.montecarlo(SESSION, noise_ug=wrong)
     with pytest.raises(TypeError, match="expected a list of texts"):
         ct.calibrate(SESSION, hold_out="4:3")

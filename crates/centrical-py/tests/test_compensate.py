@@ -219,6 +219,9 @@ def test_a_table_out(result, readings):
     with pytest.raises(TypeError, match="found a change"):
         columns["f4"] = columns["f1"]
     again = pickle.loads(pickle.dumps(columns))
+    for given in (columns, again):
+        with pytest.raises(ValueError, match="read-only"):
+            given["f1"][0] = 5.0
     assert type(again) is ct.Columns and np.array_equal(again["f3"], columns["f3"])
 
 

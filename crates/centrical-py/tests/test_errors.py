@@ -109,5 +109,5 @@ def test_wrong_types_are_type_errors(example):
     ):
         with pytest.raises(TypeError):
             call()
-    with pytest.raises(OverflowError):
+    with pytest.raises(ValueError, match="runs: found -1, expected 2 to"):
         ct.montecarlo(example, runs=-1)

@@ -56,6 +56,13 @@ def test_everything_public_has_a_docstring():
         assert not missing, (name, missing)
 
 
+def test_the_line_for_tumble_on_the_page_runs(root, monkeypatch):
+    monkeypatch.chdir(root)
+    call = re.search(r"`(ct\.tumble\(records, .*?\))`", (root / "docs/python.md").read_text())[1]
+    given = {"ct": ct, "records": "examples/tumble/record.csv"}
+    assert eval(call.replace("gravity=...", "gravity=9.81523"), given).names
+
+
 def test_examples_of_the_page(root, tmp_path, monkeypatch):
     monkeypatch.chdir(root)
     page = (root / "docs/python.md").read_text()

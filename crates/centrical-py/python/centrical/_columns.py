@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, NoReturn
 
 import numpy as np
@@ -15,7 +16,7 @@ else:
 
 
 class Columns(dict[str, Float]):
-    """Columns of a table by name, shape ``(n,)`` each; which columns there are does not change.
+    """Columns of a table by name, shape ``(n,)`` each, which do not change.
 
     ``pandas.DataFrame(x)``, ``polars.DataFrame(x)`` and ``pyarrow.table(x)`` take it as the dict that it is. With pyarrow
     installed it is an Arrow stream too, over the same memory.
@@ -24,6 +25,9 @@ class Columns(dict[str, Float]):
     >>> columns, columns["f1"].shape
     (<Columns f1, f2, f3 of 1 row>, (1,))
     """
+
+    def __init__(self, columns: Mapping[str, Float]) -> None:
+        super().__init__({name: _fixed(column) for name, column in columns.items()})
 
     def __arrow_c_stream__(self, requested_schema: Any = None) -> Any:
         """The columns as an Arrow stream; pyarrow has to be there."""
@@ -36,7 +40,7 @@ class Columns(dict[str, Float]):
         return pyarrow.table(arrays, names=list(self)).__arrow_c_stream__(requested_schema)
 
     def _refuse(self, *_: Any, **__: Any) -> NoReturn:
-        """Not of these columns: ``dict(columns)`` can be changed."""
+        """Not of these columns: ``dict(columns)`` can be changed, and a copy of an array."""
         raise TypeError("found a change of Columns, expected none: dict(columns) can be changed")
 
     __setitem__ = __delitem__ = __ior__ = _refuse
@@ -48,6 +52,13 @@ class Columns(dict[str, Float]):
     def __repr__(self) -> str:
         n = len(next(iter(self.values()), ()))
         return f"<Columns {', '.join(self)} of {n} row{'' if n == 1 else 's'}>"
+
+
+def _fixed(column: Float) -> Float:
+    """The same memory, not to be written."""
+    view = column.view()
+    view.flags.writeable = False
+    return view
 
 
 def columns_of_rows(rows: Float) -> Columns:

@@ -17,6 +17,7 @@ from ._document import Document
 from ._documents import check_documents
 from ._given import given_file, given_session, is_file
 from ._noise import Noise, noise_of_array
+from ._numbers import above_zero, natural
 from ._paths import paths
 from ._plan import Plan
 from ._progress import Bar
@@ -27,6 +28,12 @@ if TYPE_CHECKING:
     from typing import Literal
 
     from ._types import Array, File, Form, Format, Language, Method, Path, Quantity, Session, Table
+
+
+G = 9.80665
+"""Standard gravity [m/s^2]."""
+
+SEEDS = "a number from 0 to 2^64 - 1"
 
 
 def calibrate(
@@ -176,6 +183,7 @@ def assess(
     the largest specific force of the prediction [m/s^2], by default the highest of the session. ``acceptable`` and
     ``objections`` of the document have the verdict of `calibrate` on the fit that is assessed.
     """
+    above_zero("range", range, G, " g")
     with Bar("assessing") as shown:
         return Document(_native.assess(given_session(session), coverage, without_outliers, scale_by_residuals, range, shown))
 
@@ -198,6 +206,9 @@ def montecarlo(
     >>> ct.montecarlo(example, runs=20, seed=7).runs
     20
     """
+    natural("runs", runs, "2 to 10,000,000 calibrations")
+    natural("seed", seed, SEEDS)
+    above_zero("noise_ug", noise_ug)
     with Bar("calibrating") as shown:
         return Document(_native.montecarlo(given_session(subject), runs, seed, coverage, linear, noise_ug, typical, shown))
 
@@ -279,6 +290,7 @@ def plan(
 
 def simulate(plan: Path, truth: Path, *, seed: int, out: Path, format: Format = "csv") -> Document:
     """Writes a whole session to the folder ``out`` as a laboratory would deliver it, with ``truth.json`` beside it."""
+    natural("seed", seed, SEEDS)
     with Bar("simulating") as shown:
         return Document(_native.simulate(plan, truth, seed, out, format, shown))
 
@@ -330,6 +342,8 @@ def series(
     >>> ct.series([example], folder / "store").acceptable
     1
     """
+    if jobs is not None:
+        natural("jobs", jobs, "a number of cores")
     with Bar("calibrating") as shown:
         return Document(_native.series(paths(sessions), out, method, jobs, rows_only, reduced, shown))
 

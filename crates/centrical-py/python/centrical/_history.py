@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from . import _native
 from ._document import Document
+from ._numbers import natural
 from ._paths import paths
 from ._progress import Bar
 from ._result import Result
@@ -15,6 +16,9 @@ if TYPE_CHECKING:
     from typing import Literal
 
     from ._types import Path, Quantity
+
+
+SESSIONS = "a number of acceptable sessions, 2 or more"
 
 
 def add_to_store(store: Path, results: Path | Result | Iterable[Path | Result], *, rows_only: bool = False) -> tuple[int, int]:
@@ -151,6 +155,7 @@ def control_chart(
     >>> ct.control_chart("df_1", folder / "charted", limits=(0.0, 0.01)).name
     'df_1'
     """
+    natural("accepted", accepted, SESSIONS)
     chosen = (model, serial, station)
     return Document(_native.history_chart(parameter, paths(results), chosen, accepted, limits, rules, out))
 
@@ -173,4 +178,5 @@ def write_pages(
     >>> ct.write_pages(folder / "shown", folder / "pages")
     3
     """
+    natural("accepted", accepted, SESSIONS)
     return _native.history_pages(store, out, limit, laboratory, batches, accepted)

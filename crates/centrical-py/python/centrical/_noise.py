@@ -37,6 +37,9 @@ class Noise(Document):
         ``estimator`` is a name of the command, or ``"adev"``, ``"oadev"``, ``"mdev"``, ``"hdev"``, ``"ohdev"``; ``reading``
         the place of the reading in ``readings``.
         """
+        count = len(self.readings)
+        if not -count <= reading < count:
+            raise ValueError(f"reading: found {reading}, expected 0 to {count - 1}")
         curves = self.readings[reading].deviations
         wanted = SHORT.get(estimator, estimator)
         for curve in curves:

@@ -14,6 +14,7 @@ from . import _native
 from ._columns import columns_of_rows
 from ._document import Document, Record, escape
 from ._documents import check_documents
+from ._numbers import natural
 from ._paths import paths
 from ._table import columns_of, is_table, numbers
 
@@ -340,7 +341,7 @@ class Result:
 
     def summary(self, width: int = 100) -> str:
         """The verdict and the tables as the command shows them, in lines of ``width`` characters."""
-        return self.native.text(width)
+        return self.native.text(natural("width", width, "a number of characters"))
 
     def __str__(self) -> str:
         return self.summary()
