@@ -183,6 +183,10 @@ def test_a_changed_session_is_made_again(cluster, averaged, tmp_path):
     assert count == COUNT
     assert "changed" in found["unit_serial"].to_pylist()
     assert "0030" not in found["unit_serial"].to_pylist()
+    # Results that no row names any more went with their part.
+    keys = set(found["key"].to_pylist())
+    assert {path.split("/")[1].removesuffix(".json") for path in list_of(cluster, out, "results")} == keys
+    assert {path.split("/")[1] for path in list_of(cluster, out, "reduced")} == keys
 
 
 def test_a_wrong_credential_and_no_scheduler_end_at_once(cluster, plant):
