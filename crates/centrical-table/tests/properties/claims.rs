@@ -48,7 +48,7 @@ fn an_array_longer_than_its_file() {
         "m.npy, column 1: found a damaged array (failed to fill whole buffer), expected an array as long as it says"
     );
     assert_eq!(
-        message("m.npy", &array("1, 60000"), &numbered()),
+        message("m.npy", &array("2000, 60000"), &numbered()),
         "m.npy, column 1: found a damaged array (480000 bytes a row), expected an array as long as it says"
     );
     assert_eq!(
