@@ -22,8 +22,12 @@ static ASKED: OnceLock<AtomicBool> = OnceLock::new();
 /// Prepares for an interruption from now on. Where the system has no such signals nothing is done.
 #[cfg(unix)]
 pub fn prepare() {
-    let Ok(mut signals) = Signals::new(heeded()) else { return };
-    let _ = thread::Builder::new().spawn(move || signals.forever().for_each(|_| end()));
+    // Without the thread the system ends the program.
+    let _ = thread::Builder::new().spawn(|| {
+        if let Ok(mut signals) = Signals::new(heeded()) {
+            signals.forever().for_each(|_| end());
+        }
+    });
 }
 
 /// The same on other systems.
@@ -41,7 +45,7 @@ fn end() {
     }
 }
 
-/// The signals that ask for an end. Under `nohup`, which has the program ignore a terminal that hangs up, that is not one of them.
+/// The signals that ask for an end. Under `nohup` on Linux, which has the program ignore a terminal that hangs up, that is not one of them.
 #[cfg(unix)]
 fn heeded() -> impl Iterator<Item = i32> {
     let status = fs::read_to_string("/proc/self/status").unwrap_or_default();

@@ -12,6 +12,7 @@ mod progress;
 #[cfg(feature = "serve")]
 mod serving;
 
+use std::env;
 use std::io::{self, Write};
 use std::num::NonZero;
 use std::process::ExitCode;
@@ -87,17 +88,23 @@ fn main() -> ExitCode {
 
 /// Makes do with as many threads as the system gives, where it gives fewer than there are processors: a container may limit them.
 fn make_do_with_few_threads() {
+    /// Threads beside those that compute: of files that are written, and of a server.
+    const OTHERS: usize = 3;
+    if env::var_os("RAYON_NUM_THREADS").is_some() {
+        return;
+    }
     let processors = thread::available_parallelism().map_or(1, NonZero::get);
     let gate = Mutex::new(());
     let given = thread::scope(|scope| {
         // Each waits for the others.
         let _closed = gate.lock();
         let is_given = |_: &usize| thread::Builder::new().spawn_scoped(scope, || drop(gate.lock())).is_ok();
-        (0..processors).take_while(is_given).count()
+        (0..processors + OTHERS).take_while(is_given).count()
     });
-    if given < processors {
-        let builder = ThreadPoolBuilder::new().num_threads(given.max(1));
-        let builder = if given == 0 { builder.use_current_thread() } else { builder };
+    if given < processors + OTHERS {
+        let count = given.saturating_sub(OTHERS);
+        let builder = ThreadPoolBuilder::new().num_threads(count.max(1));
+        let builder = if count == 0 { builder.use_current_thread() } else { builder };
         // An error is that of whoever needs the threads.
         let _ = builder.build_global();
     }

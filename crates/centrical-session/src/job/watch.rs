@@ -15,6 +15,7 @@ use centrical_table::claim_folder;
 
 pub use self::arrivals::Watch;
 pub use self::board::WatchProgress;
+use self::quiet::Quiet;
 pub use self::request::{WatchEnd, WatchEvent, WatchRequest};
 use crate::error::Error;
 use crate::experiment::{Session, refuse_inputs};
@@ -36,13 +37,13 @@ pub fn watch(
 ) -> Result<WatchEnd, Error> {
     let _claim = claim_folder(&request.out)?;
     refuse_inputs(&OUTPUTS.map(|name| request.out.join(name)), &session.files())?;
-    let mut rests_quiet = quiet::Quiet::new(request.quiet, request.once);
+    let mut quiet = Quiet::new(request.quiet, request.once);
     loop {
-        let session = rests::with_rests_there(session, &mut rests_quiet, &|_| arrivals::until(stop))?;
+        let session = rests::with_rests_there(session, &mut quiet, &|_| request::until(stop))?;
         let model = session.model()?;
         let mut following = following::Following::resume(request, &session, &model)?;
         report(WatchEvent::Begun(&model));
-        let end = following.run(stop, &mut rests_quiet, report).inspect_err(|error| {
+        let end = following.run(stop, &mut quiet, report).inspect_err(|error| {
             if !matches!(error, Error::Stopped(_)) {
                 report(WatchEvent::Failed(error));
             }

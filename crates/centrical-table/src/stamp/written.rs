@@ -51,7 +51,7 @@ pub(crate) fn nanoseconds(text: &[u8]) -> Option<(i64, bool)> {
 
 /// The stamp of a date and a time of the day. The date may be a stamp at midnight, as workbooks have it.
 pub(crate) fn joined(date: &[u8], time: &[u8]) -> Vec<u8> {
-    const MIDNIGHT: [&[u8]; 2] = [b"T00:00:00.000", b" 00:00:00"];
+    const MIDNIGHT: [&[u8]; 3] = [b"T00:00:00.000", b"T00:00:00", b" 00:00:00"];
     let day = MIDNIGHT.iter().find_map(|end| date.strip_suffix(*end)).unwrap_or(date);
     [day, time].join(&b' ')
 }

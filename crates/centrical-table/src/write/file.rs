@@ -37,7 +37,7 @@ impl Beside {
     /// Creates the temporary file, to be written.
     pub fn create(file: &Path) -> io::Result<(Self, File)> {
         let before = fs::metadata(file).ok();
-        if before.as_ref().is_some_and(|metadata| !metadata.is_file()) || is_of_system(file) {
+        if before.as_ref().is_some_and(|metadata| !metadata.is_file()) || is_of_system(file, folder_of(file)) {
             return Err(io::Error::other("found something that is no regular file, expected a file or a free name"));
         }
         if before.as_ref().is_some_and(|metadata| metadata.permissions().readonly()) {
@@ -46,17 +46,22 @@ impl Beside {
             ));
         }
         let name = file.file_name().ok_or_else(|| io::Error::other("found no name of a file, expected one"))?;
-        let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        let folder = folder_of(file);
         let prefix = prefix(name.to_string_lossy().as_ref());
         let mut begun = begun();
         begun.check()?;
         let mut builder = Builder::new();
         builder.prefix(&prefix).suffix(".tmp").rand_bytes(10);
-        readable_as_any_file(&mut builder);
+        // What the user keeps from others stays so.
+        let rights = before.map(|before| before.permissions());
+        match &rights {
+            Some(rights) => builder.permissions(rights.clone()),
+            None => readable_as_any_file(&mut builder),
+        };
         let (output, temporary) = builder.tempfile_in(folder)?.into_parts();
-        if let Some(before) = before {
-            // What the user keeps from others stays so. Some file systems know no rights: nothing is lost there.
-            let _ = fs::set_permissions(&temporary, before.permissions());
+        if let Some(rights) = rights {
+            // Those that the mask took away. Some file systems know no rights: nothing is lost there.
+            let _ = fs::set_permissions(&temporary, rights);
         }
         begun.files.insert(temporary.to_path_buf());
         Ok((Self { file: file.to_owned(), temporary: Some(temporary) }, output))
@@ -135,12 +140,17 @@ fn begun() -> MutexGuard<'static, Begun> {
     BEGUN.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Whether a name is a link of the system to an open file, such as `/dev/stdout`: even where that is a regular file, what took the place of the
+/// Whether a name is a link of the system to an open file, such as `/dev/stdout`. That may be a regular file, but what took the place of the
 /// link would be in the way of every other program.
-fn is_of_system(file: &Path) -> bool {
+fn is_of_system(file: &Path, folder: &Path) -> bool {
     let is_link = fs::symlink_metadata(file).is_ok_and(|metadata| metadata.is_symlink());
-    let folder = file.parent().and_then(|folder| folder.canonicalize().ok());
-    is_link && folder.is_some_and(|folder| folder == Path::new("/dev") || folder.starts_with("/proc"))
+    let is_of_system = |folder: PathBuf| folder == Path::new("/dev") || folder.starts_with("/proc");
+    is_link && folder.canonicalize().is_ok_and(is_of_system)
+}
+
+/// The folder of a file.
+fn folder_of(file: &Path) -> &Path {
+    file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
 /// The beginning of the name of a temporary file.
@@ -151,14 +161,16 @@ fn prefix(name: &str) -> OsString {
 
 /// As any new file, the temporary one is what the user's mask allows; the crate's own rule is the owner alone.
 #[cfg(unix)]
-fn readable_as_any_file(builder: &mut Builder) {
+fn readable_as_any_file<'b, 'p, 's>(builder: &'b mut Builder<'p, 's>) -> &'b mut Builder<'p, 's> {
     use std::os::unix::fs::PermissionsExt;
-    builder.permissions(fs::Permissions::from_mode(0o666));
+    builder.permissions(fs::Permissions::from_mode(0o666))
 }
 
 /// Other systems give a new file the rights of its folder.
 #[cfg(not(unix))]
-fn readable_as_any_file(_: &mut Builder) {}
+fn readable_as_any_file<'b, 'p, 's>(builder: &'b mut Builder<'p, 's>) -> &'b mut Builder<'p, 's> {
+    builder
+}
 
 #[cfg(all(test, target_os = "linux"))]
 mod tests {

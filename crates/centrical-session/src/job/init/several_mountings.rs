@@ -34,7 +34,7 @@ pub(super) fn refuse(mounting: &SeenMounting) -> Result<(), Error> {
     Err(Error::content(record, Place::Whole, found, expected))
 }
 
-/// The times halfway between pulls in different directions, of which strong ones show that there are two.
+/// The times halfway between pulls in different directions. Strong pulls show that there are two.
 fn splits(plateaus: &[SeenPlateau]) -> Vec<f64> {
     let pulls = pulls(plateaus);
     let largest = pulls.iter().map(|(_, pull)| norm(pull)).fold(0.0, f64::max);

@@ -1,7 +1,6 @@
 //! Which plateaus of a session folder have arrived while it is being filled.
 
 use std::collections::BTreeMap;
-use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, SystemTime};
@@ -12,9 +11,10 @@ use centrical::reduction::{
 };
 use centrical_table::Extent;
 
-use super::changed::reads_otherwise;
+use super::changed::{over, reads_otherwise};
 use super::growth::Growth;
 use super::quiet::{Quiet, Sight};
+use super::request::until;
 use super::rests;
 use crate::error::Error;
 use crate::experiment::{Session, SpeedSource};
@@ -80,9 +80,14 @@ impl Look {
 impl<'s> Watch<'s> {
     /// Before the first look at the records of `session`, or before the only one.
     pub fn new(session: &'s Session, quiet: Duration, looks_once: bool) -> Self {
+        Self::having_seen(session, Quiet::new(quiet, looks_once))
+    }
+
+    /// The same after an earlier watch has seen its files.
+    pub(super) fn having_seen(session: &'s Session, quiet: Quiet) -> Self {
         Self {
             session,
-            quiet: Quiet::new(quiet, looks_once),
+            quiet,
             has_rests: false,
             finished: Vec::new(),
             taken: Vec::new(),
@@ -94,6 +99,11 @@ impl<'s> Watch<'s> {
             awaited_speeds: None,
             note: None,
         }
+    }
+
+    /// What it has seen of files.
+    pub(super) fn quiet(&mut self) -> &mut Quiet {
+        &mut self.quiet
     }
 
     /// Whether all plateaus of the schedule have come, with the telemetry, and all rests in attitudes of their own.
@@ -128,11 +138,15 @@ impl<'s> Watch<'s> {
         let mut hasty = Self { quiet, seen: None, note: None, ..self.clone() };
         let changed = format!("records changed within the last {} s; with --quiet 0", self.quiet.after.as_secs_f64());
         match hasty.look(stop) {
-            Ok(more) if more.is_empty() => None,
             Ok(more) => {
-                let end = if hasty.is_complete() { ", and the schedule would be complete" } else { "" };
-                let plateaus = if more.len() == 1 { "plateau" } else { "plateaus" };
-                Some(format!("{changed}, {} more {plateaus} would count as arrived{end}", more.len()))
+                let plateaus = match more.len() {
+                    0 => None,
+                    1 => Some("1 more plateau would count as arrived".to_owned()),
+                    count => Some(format!("{count} more plateaus would count as arrived")),
+                };
+                let end = hasty.is_complete().then(|| "the schedule would be complete".to_owned());
+                let would: Vec<String> = plateaus.into_iter().chain(end).collect();
+                (!would.is_empty()).then(|| format!("{changed}, {}", would.join(", and ")))
             }
             Err(error) => Some(format!("{changed}, they would be refused: {error}")),
         }
@@ -199,7 +213,9 @@ impl<'s> Watch<'s> {
             }
             match self.read(mounting, look, stop).and_then(|record| self.whole(mounting, &record)) {
                 Err(Error::Stopped(_)) => return Ok(()),
-                Err(error) if !look.left_alone => self.note = Some(Note::NotYet(error.to_string())),
+                Err(error) if !look.left_alone || self.quiet.may_pass(&error) => {
+                    self.note = Some(Note::NotYet(error.to_string()));
+                }
                 Err(error) => return Err(error),
                 Ok((reduced, _)) => {
                     self.finished[mounting] = reduced.clone();
@@ -239,7 +255,7 @@ impl<'s> Watch<'s> {
         self.note = None;
         let finished = look.left_alone || look.followed;
         let reduced = self.read(mounting, look, stop).and_then(|record| {
-            self.quiet.failing = None;
+            self.quiet.was_read();
             if let Some(growth) = &mut self.growth {
                 growth.show(&record);
             }
@@ -381,20 +397,4 @@ impl<'s> Watch<'s> {
     fn record_file(&self, mounting: usize) -> &Path {
         self.session.mountings[mounting].records.first().map_or(Path::new(""), PathBuf::as_path)
     }
-}
-
-/// The progress of work that ends when `stop` is raised.
-pub(super) fn until(stop: &AtomicBool) -> ControlFlow<()> {
-    if stop.load(Ordering::Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-}
-
-/// How many plateaus of a schedule that was found are over: those before the last one that reads unlike its predecessor.
-fn over(found: &[ScheduledPlateau]) -> usize {
-    /// Relative difference of specific forces that no error of a unit makes up.
-    const UNLIKE: f64 = 0.02;
-    let is_unlike = |k: &usize| {
-        let [before, after] = [&found[k - 1].nominal_z, &found[*k].nominal_z];
-        (after - before).norm() > UNLIKE * before.norm().max(after.norm())
-    };
-    (1..found.len()).rev().find(is_unlike).unwrap_or(0)
 }

@@ -1,6 +1,7 @@
 //! Plateaus whose files have changed since they were taken up.
 
 use centrical::Observation;
+use centrical::reduction::ScheduledPlateau;
 
 use crate::document::WatchedPlateau;
 use crate::experiment::{PlateauName, Session};
@@ -41,4 +42,15 @@ impl Changed {
         };
         Some(format!("{whole} otherwise than before; the watch begins anew with the files as they are"))
     }
+}
+
+/// How many plateaus of a schedule that was found are over: those before the last one that reads unlike its predecessor.
+pub(super) fn over(found: &[ScheduledPlateau]) -> usize {
+    /// Relative difference of specific forces that no error of a unit makes up.
+    const UNLIKE: f64 = 0.02;
+    let is_unlike = |k: &usize| {
+        let [before, after] = [&found[k - 1].nominal_z, &found[*k].nominal_z];
+        (after - before).norm() > UNLIKE * before.norm().max(after.norm())
+    };
+    (1..found.len()).rev().find(is_unlike).unwrap_or(0)
 }

@@ -11,11 +11,11 @@ use centrical::reduction::MeasuredSpeed;
 use centrical::{FitError, Group, MeasurementModel, Observation, SetPoint, Weight};
 use nalgebra::Vector3;
 
-use super::arrivals::{Watch, until};
+use super::arrivals::Watch;
 use super::board::{Board, WatchProgress};
 use super::changed::Changed;
 use super::quiet::Quiet;
-use super::request::{WatchEnd, WatchEvent, WatchRequest};
+use super::request::{WatchEnd, WatchEvent, WatchRequest, until};
 use super::rests;
 use crate::document::{LiveStatus, WatchState, WatchedPlateau, append_history, keep_history, largest_force};
 use crate::error::{Error, Place};
@@ -69,7 +69,6 @@ impl<'a> Following<'a> {
         next.take(&taken).map_err(planning)?;
         let mut come = vec![false; experiment.set_points.len()];
         state.plateaus.iter().for_each(|plateau| come[plateau.set_point] = true);
-        let kept = Instant::now();
         let mut following = Self {
             request,
             session,
@@ -77,7 +76,7 @@ impl<'a> Following<'a> {
             follower,
             next,
             state,
-            kept,
+            kept: Instant::now(),
             come,
             held_out,
             changed: Changed::default(),
@@ -109,11 +108,11 @@ impl<'a> Following<'a> {
     pub fn run(
         &mut self,
         stop: &AtomicBool,
-        rests_quiet: &mut Quiet,
+        quiet: &mut Quiet,
         report: &mut dyn FnMut(WatchEvent),
     ) -> Result<Option<WatchEnd>, Error> {
         let mut board = self.board.take();
-        let end = self.follow(stop, rests_quiet, report, board.as_mut());
+        let end = self.follow(stop, quiet, report, board.as_mut());
         if let Some(board) = &mut board {
             match &end {
                 // The next watch writes it anew.
@@ -133,11 +132,11 @@ impl<'a> Following<'a> {
     fn follow(
         &mut self,
         stop: &AtomicBool,
-        rests_quiet: &mut Quiet,
+        quiet: &mut Quiet,
         report: &mut dyn FnMut(WatchEvent),
         mut board: Option<&mut Board>,
     ) -> Result<Option<WatchEnd>, Error> {
-        let mut watch = Watch::new(self.session, self.request.quiet, self.request.once);
+        let mut watch = Watch::having_seen(self.session, quiet.clone());
         let (mut note, mut is_frozen) = (None, false);
         loop {
             self.session.folder.marks().refuse_replaced()?;
@@ -161,6 +160,7 @@ impl<'a> Following<'a> {
             if let Some(note) = self.changed.text(self.session) {
                 report(WatchEvent::Waiting(&note));
                 self.forget()?;
+                quiet.clone_from(watch.quiet());
                 return Ok(None);
             }
             if let Some(board) = &mut board {
@@ -190,8 +190,9 @@ impl<'a> Following<'a> {
                 watch.without_quiet(stop).iter().for_each(|note| report(WatchEvent::Waiting(note)));
                 return Ok(Some(self.stopped()));
             }
-            if rests::have_come(self.session, rests_quiet) {
+            if rests::have_come(self.session, watch.quiet()) {
                 self.keep()?;
+                quiet.clone_from(watch.quiet());
                 return Ok(None);
             }
             if stop.load(Ordering::Relaxed) {

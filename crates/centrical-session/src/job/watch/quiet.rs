@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::fs;
 use std::io::ErrorKind;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::{Duration, Instant, SystemTime};
 
 use centrical_table::Error as TableError;
@@ -21,8 +21,8 @@ pub(super) struct Quiet {
     /// Whether the watch looks once: the times of the files are then all that it has.
     pub looks_once: bool,
     /// Since when the system fails to read a record.
-    pub failing: Option<Instant>,
-    seen: BTreeMap<PathBuf, Seen>,
+    failing: Option<Instant>,
+    seen: BTreeMap<Vec<PathBuf>, Seen>,
 }
 
 /// How files looked.
@@ -44,8 +44,10 @@ pub(super) struct Sight {
     pub written: Option<SystemTime>,
     /// For how long they have not changed.
     pub stood: Duration,
-    /// When they changed last, by the clock of the watch.
+    /// When they changed last, by the clock of the watch; their own time as long as it has not seen them change.
     pub changed: Option<SystemTime>,
+    /// Whether they are older than the time called quiet by their own time.
+    pub is_old: bool,
     /// Whether they have been left alone for the time called quiet.
     pub left_alone: bool,
 }
@@ -59,14 +61,14 @@ impl Quiet {
     /// Looks at files that belong together, the last one to change counts; `None` unless all are there. Their own time counts as long as
     /// the watch has not seen them change.
     pub fn look<'f>(&mut self, files: impl IntoIterator<Item = &'f PathBuf>) -> Option<Sight> {
-        let (mut first, mut bytes, mut written) = (None, 0, None);
-        for file in files {
+        let files: Vec<PathBuf> = files.into_iter().cloned().collect();
+        let (mut bytes, mut written) = (0, None);
+        for file in &files {
             let metadata = fs::metadata(file).ok()?;
-            first = first.or(Some(file.as_path()));
             bytes += metadata.len();
             written = written.max(metadata.modified().ok());
         }
-        Some(self.see(first?, bytes, written))
+        Some(self.see(files, bytes, written))
     }
 
     /// The last of files that is not there or has not been left alone; each of them is looked at.
@@ -76,26 +78,36 @@ impl Quiet {
 
     /// Whether the system fails to read a file, as a file server does for a moment, and has not done so for the time called quiet.
     pub fn may_pass(&mut self, error: &Error) -> bool {
-        let Error::Table(TableError::Io { source, .. }) = error else { return false };
+        let Error::Table(TableError::Io { source, .. }) = error else {
+            self.failing = None;
+            return false;
+        };
         let since = *self.failing.get_or_insert_with(Instant::now);
         !self.looks_once && source.kind() != ErrorKind::PermissionDenied && since.elapsed() < self.after
     }
 
-    fn see(&mut self, file: &Path, bytes: u64, written: Option<SystemTime>) -> Sight {
-        let now = match self.seen.get(file) {
+    /// Notes that a file was read.
+    pub fn was_read(&mut self) {
+        self.failing = None;
+    }
+
+    fn see(&mut self, files: Vec<PathBuf>, bytes: u64, written: Option<SystemTime>) -> Sight {
+        let now = match self.seen.get(&files) {
             Some(seen) if (seen.bytes, seen.written) == (bytes, written) => *seen,
             before => Seen { bytes, written, since: Instant::now(), is_altered: before.is_some() },
         };
-        self.seen.insert(file.to_owned(), now);
+        self.seen.insert(files, now);
         let age = written.and_then(|written| written.elapsed().ok()).filter(|_| !now.is_altered);
         let watched = now.since.elapsed();
+        let is_old = age.is_some_and(|age| age >= self.after);
         let is_standing = self.looks_once || watched >= STANDING.min(self.after);
         Sight {
             bytes,
             written,
             stood: if self.looks_once { age.unwrap_or_default() } else { watched },
             changed: SystemTime::now().checked_sub(age.unwrap_or_default().max(watched)),
-            left_alone: watched >= self.after || is_standing && age.is_some_and(|age| age >= self.after),
+            is_old,
+            left_alone: watched >= self.after || is_standing && is_old,
         }
     }
 }
@@ -111,36 +123,36 @@ mod tests {
     #[test]
     fn a_record_that_grows_is_not_left_alone_whatever_its_time() {
         let lagging = || SystemTime::now().checked_sub(60 * MINUTE);
-        let (mut quiet, file) = (Quiet::new(MINUTE, false), Path::new("m01.csv"));
+        let (mut quiet, file) = (Quiet::new(MINUTE, false), || vec![PathBuf::from("m01.csv")]);
         for bytes in 1..5 {
-            assert!(!quiet.see(file, bytes, lagging()).left_alone);
+            assert!(!quiet.see(file(), bytes, lagging()).left_alone);
         }
-        let changed = quiet.see(file, 5, lagging()).changed.unwrap();
+        let changed = quiet.see(file(), 5, lagging()).changed.unwrap();
         assert!(changed.elapsed().unwrap() < MINUTE, "by the clock of the watch");
         // Two looks alike between two lines of a recorder.
-        let (old, new) = (lagging(), Path::new("m02.csv"));
-        assert!(!quiet.see(new, 9, old).left_alone && !quiet.see(new, 9, old).left_alone, "it may grow");
-        assert!(Quiet::new(MINUTE, true).see(new, 9, old).left_alone);
+        let (old, new) = (lagging(), || vec![PathBuf::from("m02.csv")]);
+        assert!(!quiet.see(new(), 9, old).left_alone && !quiet.see(new(), 9, old).left_alone, "it may grow");
+        assert!(Quiet::new(MINUTE, true).see(new(), 9, old).left_alone);
     }
 
     /// Where a file has stood for a while, its time counts too.
     #[test]
     fn an_old_record_need_not_be_watched_for_long() {
         let old = SystemTime::now().checked_sub(60 * MINUTE);
-        let (mut quiet, file) = (Quiet::new(SOON, false), Path::new("m01.csv"));
-        assert!(!quiet.see(file, 9, old).left_alone);
+        let (mut quiet, file) = (Quiet::new(SOON, false), || vec![PathBuf::from("m01.csv")]);
+        assert!(!quiet.see(file(), 9, old).left_alone);
         std::thread::sleep(SOON);
-        assert!(quiet.see(file, 9, old).left_alone);
+        assert!(quiet.see(file(), 9, old).left_alone);
     }
 
     /// A record dated to the future.
     #[test]
     fn a_record_that_stands_is_left_alone_whatever_its_time() {
         let future = SystemTime::now().checked_add(60 * MINUTE);
-        let (mut quiet, file) = (Quiet::new(SOON, false), Path::new("m01.csv"));
-        assert!(!quiet.see(file, 9, future).left_alone);
+        let (mut quiet, file) = (Quiet::new(SOON, false), || vec![PathBuf::from("m01.csv")]);
+        assert!(!quiet.see(file(), 9, future).left_alone);
         std::thread::sleep(SOON);
-        let sight = quiet.see(file, 9, future);
+        let sight = quiet.see(file(), 9, future);
         assert!(sight.left_alone && sight.stood >= SOON);
     }
 }

@@ -16,7 +16,9 @@ use crate::job::reduce::with_all_rests;
 /// [`Error`] when a table or a record that has been left alone is wrong; [`Error::Stopped`].
 pub(super) fn with_rests_there(session: &Session, quiet: &mut Quiet, progress: OnProgress) -> Result<Session, Error> {
     let mut tables = session.rest_tables.clone();
-    let waited_for = tables.iter().position(|table| !is_there(table, quiet)).unwrap_or(tables.len());
+    // Each look counts: all of them are looked at.
+    let there: Vec<bool> = tables.iter().map(|table| is_there(table, quiet)).collect();
+    let waited_for = there.iter().position(|there| !there).unwrap_or(tables.len());
     let later = tables.split_off(waited_for);
     tables.iter_mut().try_for_each(|table| table.read(&session.folder))?;
     let there = session.clone().with_rest_tables(tables);
@@ -33,7 +35,9 @@ pub(super) fn awaited(session: &Session) -> Option<&PathBuf> {
 
 /// Whether the rests that are waited for have come.
 pub(super) fn have_come(session: &Session, quiet: &mut Quiet) -> bool {
-    session.rest_tables.iter().find(|table| table.is_awaited()).is_some_and(|table| is_there(table, quiet))
+    let awaited = session.rest_tables.iter().filter(|table| table.is_awaited());
+    let there: Vec<bool> = awaited.map(|table| is_there(table, quiet)).collect();
+    there.first() == Some(&true)
 }
 
 /// The rests of the session as data of a fit.
@@ -43,7 +47,7 @@ pub(super) fn observations(session: &Session) -> Vec<Observation> {
     rests.map(|(set_point, rest)| rest.observation(set_point)).collect()
 }
 
-/// Whether all files of a table are there and have been left alone.
+/// Whether all files of a table are there and have been left alone. Those of earlier days are taken at once: a watch that goes on has them.
 fn is_there(table: &RestTable, quiet: &mut Quiet) -> bool {
-    quiet.look(table.files()).is_some_and(|sight| sight.left_alone)
+    quiet.look(table.files()).is_some_and(|sight| sight.left_alone || sight.is_old)
 }
