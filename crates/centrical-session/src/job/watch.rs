@@ -39,7 +39,7 @@ pub fn watch(
     refuse_inputs(&OUTPUTS.map(|name| request.out.join(name)), &session.files())?;
     let mut quiet = Quiet::new(request.quiet, request.once);
     loop {
-        let session = rests::with_rests_there(session, &mut quiet, &|_| request::until(stop))?;
+        let session = rests::with_rests_there(session, &mut quiet, &|_| quiet::until(stop))?;
         let model = session.model()?;
         let mut following = following::Following::resume(request, &session, &model)?;
         report(WatchEvent::Begun(&model));

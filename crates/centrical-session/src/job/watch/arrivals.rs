@@ -13,8 +13,7 @@ use centrical_table::Extent;
 
 use super::changed::{over, reads_otherwise};
 use super::growth::Growth;
-use super::quiet::{Quiet, Sight};
-use super::request::until;
+use super::quiet::{Quiet, Sight, until};
 use super::rests;
 use crate::error::Error;
 use crate::experiment::{Session, SpeedSource};

@@ -1,9 +1,11 @@
-//! How long files have been left alone. The clock of the machine that writes them may be off: what a watch sees itself decides.
+//! How long files have been left alone, and until when a watch works. The clock of the machine that writes them may be off: what a watch sees itself decides.
 
 use std::collections::BTreeMap;
 use std::fs;
 use std::io::ErrorKind;
+use std::ops::ControlFlow;
 use std::path::PathBuf;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant, SystemTime};
 
 use centrical_table::Error as TableError;
@@ -110,6 +112,11 @@ impl Quiet {
             left_alone: watched >= self.after || is_standing && is_old,
         }
     }
+}
+
+/// The progress of work that ends when `stop` is raised.
+pub(super) fn until(stop: &AtomicBool) -> ControlFlow<()> {
+    if stop.load(Ordering::Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
 }
 
 #[cfg(test)]

@@ -1,8 +1,6 @@
 //! How a session is watched, what happens meanwhile, and how it ends.
 
-use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use centrical::MeasurementModel;
@@ -82,9 +80,4 @@ pub enum WatchEnd {
     },
     /// The schedule is complete: the calibration of the session, from its files anew.
     Complete(Box<CalibrationResult>),
-}
-
-/// The progress of work that ends when `stop` is raised.
-pub(super) fn until(stop: &AtomicBool) -> ControlFlow<()> {
-    if stop.load(Ordering::Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
 }
