@@ -145,11 +145,14 @@ mod tests {
     /// Where a file has stood for a while, its time counts too.
     #[test]
     fn an_old_record_need_not_be_watched_for_long() {
-        let old = SystemTime::now().checked_sub(60 * MINUTE);
-        let (mut quiet, file) = (Quiet::new(SOON, false), || vec![PathBuf::from("m01.csv")]);
-        assert!(!quiet.see(file(), 9, old).left_alone);
-        std::thread::sleep(SOON);
-        assert!(quiet.see(file(), 9, old).left_alone);
+        let written = |age: Duration| SystemTime::now().checked_sub(age);
+        for (age, is_left_alone) in [(60 * MINUTE, true), (MINUTE / 2, false)] {
+            let (mut quiet, file, written) = (Quiet::new(MINUTE, false), vec![PathBuf::from("m01.csv")], written(age));
+            assert!(!quiet.see(file.clone(), 9, written).left_alone);
+            let seen = quiet.seen.values_mut().next().unwrap();
+            seen.since = seen.since.checked_sub(STANDING).unwrap();
+            assert_eq!(quiet.see(file, 9, written).left_alone, is_left_alone);
+        }
     }
 
     /// A record dated to the future.
