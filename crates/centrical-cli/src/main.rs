@@ -65,10 +65,12 @@ enum Command {
 
 fn main() -> ExitCode {
     interruption::prepare();
-    make_do_with_few_threads();
     let matches = help::grouped(Arguments::command()).try_get_matches();
     let outcome = match matches.and_then(|matches| Arguments::from_arg_matches(&matches)) {
-        Ok(arguments) => run(arguments.command),
+        Ok(arguments) => {
+            make_do_with_few_threads();
+            run(arguments.command)
+        }
         Err(text) if text.use_stderr() => {
             say(&in_short(&text.render().to_string()));
             return ExitCode::from(2);

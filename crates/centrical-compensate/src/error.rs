@@ -60,7 +60,7 @@ pub enum NotInvertible {
 }
 
 impl NotInvertible {
-    /// The range that could be asked for [m/s^2]; `None` if there is no such range.
+    /// The range that could be asked for [m/s^2], if any.
     pub fn certain_range(&self) -> Option<f64> {
         match self {
             Self::TooNonlinear { factor, range, .. } if *factor > 0.0 => Some(certain_range(*factor, *range)),

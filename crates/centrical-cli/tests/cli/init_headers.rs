@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 use std::fs;
 
-use crate::session::Copy;
+use crate::session::{Copy, assert_lines, draft};
 
 /// The draft of the example, every header of its records and of its telemetry being these.
 fn drafted(records: &str, telemetry: &str) -> String {
@@ -20,21 +20,6 @@ fn with_headers(copy: &Copy, records: &str, telemetry: &str) {
             let (_, rows) = text.split_once('\n').unwrap();
             fs::write(&path, format!("{header}\n{rows}")).unwrap();
         }
-    }
-}
-
-fn draft(copy: &Copy, parts: &[&str]) -> String {
-    let inputs: Vec<String> = parts.iter().map(|part| copy.session().join(part).display().to_string()).collect();
-    let arguments: Vec<&str> = std::iter::once("init").chain(inputs.iter().map(String::as_str)).collect();
-    let output = copy.run(&arguments);
-    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
-    String::from_utf8(output.stdout).unwrap()
-}
-
-#[track_caller]
-fn assert_lines(draft: &str, lines: &[&str]) {
-    for line in lines {
-        assert!(draft.lines().any(|found| found.starts_with(line)), "{line} in {draft}");
     }
 }
 

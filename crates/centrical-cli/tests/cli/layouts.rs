@@ -7,7 +7,7 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use crate::session::Copy;
+use crate::session::{Copy, assert_lines, draft};
 
 /// Names, values and standard uncertainties of the parameters that the session has.
 fn parameters(copy: &Copy) -> Value {
@@ -30,21 +30,6 @@ fn rewrite(copy: &Copy, ending: &str, write: impl Fn(&Path, &[Vec<f64>])) {
         }
     }
     copy.edit("experiment.toml", |text| text.replace(".csv\"", &format!(".{ending}\"")));
-}
-
-fn draft(copy: &Copy, parts: &[&str]) -> String {
-    let inputs: Vec<String> = parts.iter().map(|part| copy.session().join(part).display().to_string()).collect();
-    let arguments: Vec<&str> = std::iter::once("init").chain(inputs.iter().map(String::as_str)).collect();
-    let output = copy.run(&arguments);
-    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
-    String::from_utf8(output.stdout).unwrap()
-}
-
-#[track_caller]
-fn assert_lines(draft: &str, lines: &[&str]) {
-    for line in lines {
-        assert!(draft.lines().any(|found| found.starts_with(line)), "{line} in {draft}");
-    }
 }
 
 /// A matrix of MATLAB 5, uncompressed; its rows are those of `rows`.

@@ -72,3 +72,20 @@ impl Copy {
         names(self.out()).chain(names(self.session()).filter(|name| !known.contains(&name.as_str()))).collect()
     }
 }
+
+/// What `init` drafts of parts of a session.
+pub fn draft(copy: &Copy, parts: &[&str]) -> String {
+    let inputs: Vec<String> = parts.iter().map(|part| copy.session().join(part).display().to_string()).collect();
+    let arguments: Vec<&str> = std::iter::once("init").chain(inputs.iter().map(String::as_str)).collect();
+    let output = copy.run(&arguments);
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout).unwrap()
+}
+
+/// Each line begins one of the draft.
+#[track_caller]
+pub fn assert_lines(draft: &str, lines: &[&str]) {
+    for line in lines {
+        assert!(draft.lines().any(|found| found.starts_with(line)), "{line} in {draft}");
+    }
+}

@@ -144,8 +144,7 @@ fn begun() -> MutexGuard<'static, Begun> {
 /// link would be in the way of every other program.
 fn is_of_system(file: &Path, folder: &Path) -> bool {
     let is_link = fs::symlink_metadata(file).is_ok_and(|metadata| metadata.is_symlink());
-    let is_of_system = |folder: PathBuf| folder == Path::new("/dev") || folder.starts_with("/proc");
-    is_link && folder.canonicalize().is_ok_and(is_of_system)
+    is_link && folder.canonicalize().is_ok_and(|folder| folder == Path::new("/dev") || folder.starts_with("/proc"))
 }
 
 /// The folder of a file.

@@ -16,9 +16,7 @@ use crate::job::reduce::with_all_rests;
 /// [`Error`] when a table or a record that has been left alone is wrong; [`Error::Stopped`].
 pub(super) fn with_rests_there(session: &Session, quiet: &mut Quiet, progress: OnProgress) -> Result<Session, Error> {
     let mut tables = session.rest_tables.clone();
-    // Each look counts: all of them are looked at.
-    let there: Vec<bool> = tables.iter().map(|table| is_there(table, quiet)).collect();
-    let waited_for = there.iter().position(|there| !there).unwrap_or(tables.len());
+    let waited_for = there(tables.iter(), quiet).iter().position(|there| !there).unwrap_or(tables.len());
     let later = tables.split_off(waited_for);
     tables.iter_mut().try_for_each(|table| table.read(&session.folder))?;
     let there = session.clone().with_rest_tables(tables);
@@ -36,8 +34,7 @@ pub(super) fn awaited(session: &Session) -> Option<&PathBuf> {
 /// Whether the rests that are waited for have come.
 pub(super) fn have_come(session: &Session, quiet: &mut Quiet) -> bool {
     let awaited = session.rest_tables.iter().filter(|table| table.is_awaited());
-    let there: Vec<bool> = awaited.map(|table| is_there(table, quiet)).collect();
-    there.first() == Some(&true)
+    there(awaited, quiet).first() == Some(&true)
 }
 
 /// The rests of the session as data of a fit.
@@ -47,7 +44,9 @@ pub(super) fn observations(session: &Session) -> Vec<Observation> {
     rests.map(|(set_point, rest)| rest.observation(set_point)).collect()
 }
 
-/// Whether all files of a table are there and have been left alone. Those of earlier days are taken at once: a watch that goes on has them.
-fn is_there(table: &RestTable, quiet: &mut Quiet) -> bool {
-    quiet.look(table.files()).is_some_and(|sight| sight.left_alone || sight.is_old)
+/// Whether all files of each table are there and have been left alone. Those of earlier days are taken at once: a watch that goes on has them.
+/// Each look counts: all tables are looked at.
+fn there<'t>(tables: impl Iterator<Item = &'t RestTable>, quiet: &mut Quiet) -> Vec<bool> {
+    let is_there = |table: &RestTable| quiet.look(table.files()).is_some_and(|sight| sight.left_alone || sight.is_old);
+    tables.map(is_there).collect()
 }

@@ -161,14 +161,11 @@ impl Rivals<'_> {
     /// The design with the unknowns of a rival at `X = 0`, where no second-order traces pass for knowledge: of one that concerns the whole
     /// session, and if what is hardly seen moves a parameter of the instrument.
     fn study_with(&self, suspect: &Suspect, shifts: &DMatrix<f64>) -> Result<Option<Study>, FitError> {
-        let (fit, data) = (self.calibration.fit(), self.calibration.data());
-        let parameters = data.model().parameters();
-        let moves = |j: usize| {
-            let beyond = suspect.seen.beyond(&shifts.row(j).transpose(), SECOND_ORDER.powi(2)).norm();
-            fit.standard_uncertainty(j).is_some_and(|u| beyond > ROUNDING * u)
+        let data = self.calibration.data();
+        let moves = |(j, u): (usize, f64)| {
+            suspect.seen.beyond(&shifts.row(j).transpose(), SECOND_ORDER.powi(2)).norm() > ROUNDING * u
         };
-        let mut instrument = (0..parameters.len()).filter(|&j| parameters[j].is_of_instrument());
-        if !Rival::COMMON.contains(&suspect.rival) || !instrument.any(moves) {
+        if !Rival::COMMON.contains(&suspect.rival) || !self.instrument().any(moves) {
             return Ok(None);
         }
         let richer = data.model().with_rivals(&[suspect.rival]);
@@ -181,13 +178,12 @@ impl Rivals<'_> {
 
     /// Whether a richer design loses a parameter of the instrument that is determined now.
     fn loses_instrument(&self, richer: &Study) -> bool {
-        let (fit, parameters) = (self.calibration.fit(), self.calibration.data().model().parameters());
-        let is_lost = |j: usize| {
+        let parameters = self.calibration.data().model().parameters();
+        let is_lost = |(j, _): (usize, f64)| {
             let there = richer.model().parameters().find(&parameters[j].name);
             there.is_none_or(|j| !richer.observability().is_estimable(j))
         };
-        let mut instrument = (0..parameters.len()).filter(|&j| parameters[j].is_of_instrument());
-        instrument.any(|j| fit.standard_uncertainty(j).is_some() && is_lost(j))
+        self.instrument().any(is_lost)
     }
 
     /// Whether a richer design loses more combinations than this one: a fit holds them, and what is hardly seen is among them.
@@ -195,15 +191,17 @@ impl Rivals<'_> {
         richer.observability().lost() > self.calibration.fit().observability().lost()
     }
 
-    /// The estimable parameter of the instrument that moves most, and by how many standard uncertainties.
-    fn most_moved(&self, moved: &[f64]) -> Option<(usize, f64)> {
+    /// The parameters of the instrument that the data determine, each with its standard uncertainty.
+    fn instrument(&self) -> impl Iterator<Item = (usize, f64)> {
         let (fit, parameters) = (self.calibration.fit(), self.calibration.data().model().parameters());
         let instrument = (0..parameters.len()).filter(|&j| parameters[j].is_of_instrument());
-        let in_uncertainties = instrument.filter_map(|j| {
-            let u = fit.standard_uncertainty(j).filter(|u| *u > 0.0)?;
-            Some((j, (moved[j] / u).abs()))
-        });
-        in_uncertainties.max_by(|a, b| a.1.total_cmp(&b.1))
+        instrument.filter_map(|j| Some((j, fit.standard_uncertainty(j)?)))
+    }
+
+    /// The estimable parameter of the instrument that moves most, and by how many standard uncertainties.
+    fn most_moved(&self, moved: &[f64]) -> Option<(usize, f64)> {
+        let uncertain = self.instrument().filter(|(_, u)| *u > 0.0);
+        uncertain.map(|(j, u)| (j, (moved[j] / u).abs())).max_by(|a, b| a.1.total_cmp(&b.1))
     }
 
     /// The specific forces of the plateaus [m/s^2].
