@@ -35,7 +35,7 @@ struct Arguments {
 
 const EXIT_CODES: &str = "\
 Exit codes: 0 done; 1 done, but the result is not acceptable (the reason is
-printed, but for --quiet); 2 bad input or usage.";
+printed, unless --quiet is given); 2 bad input or usage.";
 
 #[derive(Debug, Subcommand)]
 enum Command {

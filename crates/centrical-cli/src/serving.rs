@@ -13,7 +13,7 @@ use crate::output::say;
 /// Where pages are served.
 #[derive(Debug, clap::Args)]
 pub struct Serving {
-    /// Show it in browsers, at this address; of other machines only where the address is one that they reach [default: 127.0.0.1:8080]
+    /// Show the watch in browsers at this address; other machines see it only where they can reach the address [default: 127.0.0.1:8080]
     #[arg(long, value_name = "ADDRESS", num_args = 0..=1, default_missing_value = USUAL, conflicts_with = "once")]
     serve: Option<String>,
     /// A name of this machine by which browsers call it, beside localhost and addresses; may be repeated

@@ -9,7 +9,7 @@ use crate::given::{above_zero, probability};
 use crate::output::{Outcome, Printing};
 use crate::progress;
 
-/// Uncertainty budget, validity, residual patterns and prediction of a session's calibration.
+/// Assess a session's calibration: uncertainty budget, validity, residual patterns and prediction.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Example: centrical assess examples/ta-200 --coverage 0.99 --without-outliers")]
 pub struct Arguments {

@@ -22,14 +22,14 @@ pub struct Arguments {
     /// folder; with --json no file]
     #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Add the result to a store of calibrations, made if absent
+    /// Add the result to a store of calibrations, created if absent
     #[arg(long, value_name = "DIR")]
     store: Option<PathBuf>,
     #[command(flatten)]
     printing: Printing,
     #[command(flatten)]
     documents: Documents,
-    /// The linear fit of [K5.3] alone, with its second-order error
+    /// Make the linear fit of [K5.3] alone, with its second-order error
     #[arg(long)]
     linear: bool,
     /// How the exact fit is computed: all plateaus at once, or by the recursive filter, which gives the same estimates

@@ -28,7 +28,7 @@ pub struct Arguments {
     /// [default: twice the largest plateau reading of the calibration, or less where the inverse is not certified so far, but no less than that reading]
     #[arg(long, value_name = "QUANTITY", value_parser = acceleration)]
     range: Option<f64>,
-    /// Refuse a record with readings beyond those of the calibration, by more than a hundredth; nothing is written then
+    /// Refuse a record whose readings exceed those of the calibration by more than a hundredth, and write nothing
     #[arg(long)]
     within_calibration: bool,
     /// Axes of the specific forces: lower, upper, symmetric, case, or a file with [axes] [default: those of the result]

@@ -24,7 +24,7 @@ pub struct Arguments {
     /// Coverage probability of the intervals
     #[arg(long, default_value_t = 0.95, value_parser = probability)]
     coverage: f64,
-    /// The linear fit of [K5.3] alone, to see its second-order error
+    /// Make the linear fit of [K5.3] alone, which shows its second-order error
     #[arg(long)]
     linear: bool,
     /// White noise of the plateau means of a plan, in ug, instead of the plan's noise and durations

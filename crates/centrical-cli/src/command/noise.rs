@@ -29,7 +29,7 @@ pub struct Arguments {
     /// Columns of readings: names, or numbers from 1
     #[arg(long, value_name = "COLUMNS", value_delimiter = ',', default_value = "f1,f2,f3", value_parser = column_name)]
     readings: Vec<ColumnName>,
-    /// Unit of the readings; a unit other than of acceleration, "counts" for instance, is shown as it is
+    /// Unit of the readings; a unit that is not one of acceleration, such as "counts", is shown as it is
     #[arg(long, default_value = "m/s^2")]
     unit: String,
     /// Start of the interval to analyse, on the record's clock, s

@@ -32,7 +32,7 @@ pub struct Arguments {
     /// Levels m of [K5.5] on the frontier
     #[arg(long, value_name = "LIST", value_delimiter = ',', default_values_t = USUAL_LEVELS, value_parser = level)]
     levels: Vec<f64>,
-    /// Search until the optimality gap over all sets of mountings is below 0.25 %; the cost of whole visits adds to it
+    /// Search until the optimality gap over all sets of mountings is below 0.25 %; whole visits add to that gap
     #[arg(long)]
     certify: bool,
     /// Coverage probability of the expanded uncertainties

@@ -59,7 +59,7 @@ pub struct Documents {
     /// unit; a unit that is not within them ends with exit code 1
     #[arg(long, value_name = "FILE")]
     pub laboratory: Option<PathBuf>,
-    /// Axes to state the error model and specific forces in too: lower, upper, symmetric, case, or a file with [axes]
+    /// Further axes in which to state the error model and specific forces: lower, upper, symmetric, case, or a file with [axes]
     #[arg(long, value_name = "AXES|FILE")]
     pub axes: Option<String>,
     /// Language of the documents

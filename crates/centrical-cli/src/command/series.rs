@@ -33,7 +33,7 @@ pub struct Arguments {
     /// How a fit is computed
     #[arg(long, value_enum, default_value_t = SeriesMethod::Batch)]
     method: SeriesMethod,
-    /// Sessions at a time [default: one a core]
+    /// Sessions at a time [default: one per core]
     #[arg(long, value_name = "N")]
     jobs: Option<usize>,
     #[command(flatten)]

@@ -16,7 +16,7 @@ use crate::output::{Outcome, Printing, remark_unused_time};
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Example: centrical tumble examples/tumble/record.csv --gravity 9.81523 --out tumbled")]
 pub struct Arguments {
-    /// Records in any supported format, of one unit; or a session with [[tumble]], a folder or its experiment.toml, whose rests alone are taken
+    /// Records of one unit in any supported format; or a session with [[tumble]], a folder or its experiment.toml, whose rests alone are calibrated
     #[arg(required = true, value_name = "RECORDS|SESSION")]
     records: Vec<PathBuf>,
     /// Time column, in s: its name, or its number from 1 [default: t]
@@ -44,7 +44,7 @@ pub struct Arguments {
     /// Standard uncertainty of these attitudes, such as "0.1 deg"
     #[arg(long, value_name = "QUANTITY", value_parser = angle, requires = "attitudes")]
     attitude_uncertainty: Option<f64>,
-    /// Take slow rotation too, up to 3 deg/s: largest distance of the proof masses from its axis, such as "50 mm"
+    /// Largest distance of the proof masses from the axis of slow rotation, such as "50 mm": rotation up to 3 deg/s then counts as rests
     #[arg(long, value_name = "QUANTITY", value_parser = turning_radius)]
     turning_radius: Option<f64>,
     /// Terms of the error model, as in experiment.toml

@@ -9,15 +9,15 @@ use crate::command::history::PageOptions;
 use crate::output::Outcome;
 use crate::serving::{USUAL, remain, serve};
 
-/// Show results in browsers without writing files: a list with verdicts, a report each, two compared; and the live page of a
-/// watch whose folder it is. Of a store the pages of `history page`, which follow it while calibrations come.
+/// Show results in browsers without writing files: a list with verdicts, a report each, two compared. The folder of a watch shows
+/// its live page. A store shows the pages of `history page`, which follow new calibrations.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Example: centrical view results/")]
 pub struct Arguments {
     /// Folders, which are searched for result.json, and results; or one store
     #[arg(num_args = 1.., required = true, value_name = "DIR|RESULT|STORE")]
     paths: Vec<PathBuf>,
-    /// Address; other machines see the pages only where it is one that they reach
+    /// Address of the pages; other machines see them only where they can reach the address
     #[arg(long, value_name = "ADDRESS", default_value = USUAL)]
     serve: String,
     /// A name of this machine by which browsers call it, beside localhost and addresses; may be repeated

@@ -28,7 +28,7 @@ pub struct Unit {
     /// Largest error of a compensated reading, for the due date: '300 ug'
     #[arg(short, long, value_parser = largest_error)]
     limit: Option<f64>,
-    /// Day on which that limit is to hold [default: today]
+    /// Day on which the limit is to hold [default: today]
     #[arg(long, value_name = "DAY")]
     on: Option<Date>,
     /// Day of the forecasts [default: a year after the last calibration]
@@ -110,7 +110,7 @@ pub fn units(arguments: &Units) -> Result<Outcome, Error> {
 
 /// One centrifuge over its sessions: a tilt, turn or shift that drifts or has changed.
 ///
-/// The geometry is estimated in every session, and it is the machine's. What a unit brings along is left out where units came more than
+/// Every session estimates the geometry, which belongs to the machine. What a unit brings along is left out where units came more than
 /// once.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Example: centrical history station results --station 'north hall'")]

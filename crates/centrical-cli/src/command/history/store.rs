@@ -11,7 +11,7 @@ use crate::given::largest_error;
 use crate::output::{Outcome, Printing, print};
 use crate::progress;
 
-/// Add results to a store, which is made if it is not there. Results that it has are left as they are.
+/// Add results to a store, which is created if absent. Results that are in it already stay as they are.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Example: centrical history add store results/a results/b/result.json")]
 pub struct Add {
@@ -51,16 +51,16 @@ pub fn add(arguments: &Add) -> Result<Outcome, Error> {
 pub struct List {
     /// Folder of the store
     store: PathBuf,
-    /// Of units of this model alone
+    /// List units of this model alone
     #[arg(long)]
     model: Option<String>,
-    /// Of units of this serial number alone
+    /// List units of this serial number alone
     #[arg(long)]
     serial: Option<String>,
-    /// Of this station alone
+    /// List calibrations of this station alone
     #[arg(long)]
     station: Option<String>,
-    /// Say what may not be meant: one unit under two names, one session twice, days to come, copies that are missing or changed
+    /// Name probable mistakes: one unit under two names, one session twice, days to come, copies that are missing or changed
     #[arg(long)]
     check: bool,
     #[command(flatten)]

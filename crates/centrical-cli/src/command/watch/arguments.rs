@@ -28,7 +28,7 @@ pub struct Arguments {
     /// Hold out a plateau, e.g. 4:3 for the third of the fourth mounting; may be repeated
     #[arg(long, value_name = "MOUNTING:PLATEAU")]
     pub hold_out: Vec<PlateauName>,
-    /// Hold out every plateau that raises an alarm; in the result those that all plateaus single out, if they are fewer
+    /// Hold out every plateau that raises an alarm; from the result only those that all plateaus single out, if they are fewer
     #[arg(long)]
     pub hold_out_alarms: bool,
     /// Seconds between two readings of the folder
