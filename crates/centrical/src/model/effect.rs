@@ -114,7 +114,9 @@ pub enum Effect {
     },
     /// One relative error of the square of all speeds: `Omega^2 (1 + s)`.
     SpeedScale,
-    /// The same of the plateaus at one set speed.
+    /// One error of the amount of all speeds, `|Omega| + s` [rad/s]: the zero of a drive or of a tachometer, or digits that are cut off.
+    SpeedOffset,
+    /// A relative error of the square of one set speed.
     OneSpeed {
         /// Index of the first set point with that speed.
         first: usize,
@@ -238,8 +240,9 @@ impl Effect {
     /// Whether it acts otherwise at another speed, through more than the rate.
     pub(crate) fn changes_with_speed(self) -> bool {
         let is_disturbance = matches!(self, Self::Disturbance { .. } | Self::Monomial { .. });
+        let is_of_sense = matches!(self, Self::SpeedOffset);
         let is_of_rest = matches!(self, Self::SpinTurn { .. } | Self::MountingTilt { .. } | Self::AngleTilt { .. });
-        self.is_elastic() || is_disturbance || is_of_rest
+        self.is_elastic() || is_disturbance || is_of_sense || is_of_rest
     }
 
     /// Whether it acts through the arm, its machine or its seats: not on a rest in a free attitude, whose own attitude is
@@ -267,6 +270,7 @@ impl Effect {
             | Self::MountingShift { .. }
             | Self::Coordinate { .. }
             | Self::SpeedScale
+            | Self::SpeedOffset
             | Self::OneSpeed { .. }
             | Self::EarthRate
             | Self::Latitude => true,
@@ -293,6 +297,7 @@ impl Effect {
             | Self::RadiusScale
             | Self::Coordinate { .. }
             | Self::SpeedScale
+            | Self::SpeedOffset
             | Self::OneSpeed { .. }
             | Self::EarthRate
             | Self::Gravity
@@ -333,6 +338,8 @@ impl Effect {
             }
             Self::Coordinate { coordinate, mass } => Share::Coordinate { coordinate, mass },
             Self::SpeedScale => Share::Rate(omega_squared),
+            // Its square is below 1e-8 of the square of the speed.
+            Self::SpeedOffset => Share::Rate(set_point.omega.abs() * 2.0),
             Self::OneSpeed { first } => {
                 only(experiment.set_points[first].has_speed(set_point.omega), Share::Rate(omega_squared))
             }

@@ -191,8 +191,8 @@ impl MeasurementModel {
             speed += match effect.share(&self.experiment, set_point) {
                 Share::Turn(turn) if effect.is_elastic() => partials.turn * turn * (2.0 * size),
                 Share::Arm(displacement) if effect.is_elastic() => partials.arm * displacement * (2.0 * size),
-                // The Earth's rotation acts with `Omega`, an error of the speeds with its square.
-                Share::Rate(rate) if matches!(effect, Effect::EarthRate | Effect::Latitude) => {
+                // The Earth's rotation and an offset act with `Omega`, a scale of the speeds with its square.
+                Share::Rate(rate) if matches!(effect, Effect::EarthRate | Effect::Latitude | Effect::SpeedOffset) => {
                     partials.rate * (rate * size)
                 }
                 Share::Rate(rate) => partials.rate * (2.0 * rate * size),

@@ -32,6 +32,8 @@ pub enum Extension {
     RadiusScale,
     /// One scale of the square of all speeds.
     SpeedScale,
+    /// One offset of all speeds.
+    SpeedOffset,
     /// The Earth's rotation, where no latitude is stated.
     EarthRate,
     /// Local gravity.
@@ -93,7 +95,7 @@ pub enum Difference {
 
 impl Extension {
     /// Every extension with its name as written in sessions and plans.
-    pub const NAMED: [(&'static str, Self); 41] = [
+    pub const NAMED: [(&'static str, Self); 42] = [
         ("elastic-turn-speed", Self::ElasticTurn(Law::Speed)),
         ("elastic-turn-load", Self::ElasticTurn(Law::Load)),
         ("arm-stretch-speed", Self::ArmStretch(Law::Speed)),
@@ -102,6 +104,7 @@ impl Extension {
         ("seat-stretch-load", Self::SeatStretch(Law::Load)),
         ("radius-scale", Self::RadiusScale),
         ("speed-scale", Self::SpeedScale),
+        ("speed-offset", Self::SpeedOffset),
         ("earth-rate", Self::EarthRate),
         ("gravity", Self::Gravity),
         ("arm-turn-speed", Self::ArmTurn(Law::Speed)),
@@ -195,6 +198,9 @@ impl Extension {
             }
             Self::SpeedScale => {
                 vec![effect("speed_scale".to_owned(), "1", Group::SpeedScale, Effect::SpeedScale, 1e-3)]
+            }
+            Self::SpeedOffset => {
+                vec![effect("speed_offset".to_owned(), "rad/s", Group::SpeedOffset, Effect::SpeedOffset, 1e-3)]
             }
             Self::EarthRate if experiment.site.latitude.is_some() => Vec::new(),
             Self::EarthRate => {

@@ -39,6 +39,8 @@ pub enum Group {
     RadiusScale,
     /// Common scale of all speeds.
     SpeedScale,
+    /// Common offset of all speeds.
+    SpeedOffset,
     /// The Earth's rotation.
     EarthRate,
     /// Error of the local gravity.
@@ -67,7 +69,7 @@ pub enum Group {
 
 impl Group {
     /// All groups.
-    pub const ALL: [Self; 30] = [
+    pub const ALL: [Self; 31] = [
         Self::Bias,
         Self::Scale,
         Self::Misalignment,
@@ -86,6 +88,7 @@ impl Group {
         Self::ArmStretch,
         Self::RadiusScale,
         Self::SpeedScale,
+        Self::SpeedOffset,
         Self::EarthRate,
         Self::Gravity,
         Self::ArmTurn,
@@ -121,6 +124,7 @@ impl Group {
             Self::ArmStretch => "arm stretch",
             Self::RadiusScale => "scale of radii",
             Self::SpeedScale => "scale of speed",
+            Self::SpeedOffset => "offset of speed",
             Self::EarthRate => "Earth rate",
             Self::Gravity => "gravity",
             Self::ArmTurn => "turn of the arm's end",

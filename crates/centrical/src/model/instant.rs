@@ -41,8 +41,8 @@ pub(crate) struct MountedUnit {
     tangential: Vector3<f64>,
     /// Coriolis acceleration along the axis per unit of `Omega`: parts with `cos alpha_3`, `sin alpha_3` [m/s].
     coriolis: [Vector3<f64>; 2],
-    /// `2 w_3` [rad/s].
-    twice_axial_rate: f64,
+    /// Added to the square of the speed per unit of `Omega`: `2 w_3`, and twice an offset of the speeds [rad/s].
+    per_speed: f64,
     /// `Omega^2` is this many times the square of the speed set.
     square_scale: f64,
     /// Added to the readings behind the error model [m/s^2].
@@ -68,12 +68,16 @@ impl MeasurementModel {
             Effect::OneSpeed { first } => self.experiment.set_points[first].has_speed(motion.speed),
             _ => false,
         };
-        let acting = self.acting(x).filter(|(effect, _)| scales(*effect));
-        let square_scale = 1.0 + acting.map(|(_, size)| size).sum::<f64>();
-        let vertical = self.acting(x).filter(|(effect, _)| *effect == Effect::EarthRate).map(|(_, size)| size).sum();
+        let size_of = |is_of: &dyn Fn(Effect) -> bool| {
+            self.acting(x).filter(|(effect, _)| is_of(*effect)).map(|(_, size)| size).sum::<f64>()
+        };
+        let square_scale = 1.0 + size_of(&scales);
+        let vertical = size_of(&|effect| effect == Effect::EarthRate);
+        let offset = size_of(&|effect| effect == Effect::SpeedOffset);
         let earth_rate_x = earth_rate(&self.experiment.site) + Vector3::new(0.0, 0.0, vertical);
-        let disturbance = self.disturbance(&set_point, x);
-        MountedUnit { disturbance, ..MountedUnit::new(&geometry, &earth_rate_x, square_scale) }
+        let unit = MountedUnit::new(&geometry, &earth_rate_x, square_scale);
+        let per_speed = unit.per_speed + 2.0 * offset * motion.speed.signum();
+        MountedUnit { per_speed, disturbance: self.disturbance(&set_point, x), ..unit }
     }
 
     /// Whether anything but the rate changes with the speed.
@@ -107,7 +111,7 @@ impl MountedUnit {
             centripetal: geometry.pull_by_rate(),
             tangential: Vector3::from_fn(|i, _| c_zy[(i, 1)] * r_y[(0, i)] - c_zy[(i, 0)] * r_y[(1, i)]),
             coriolis: [along_axis(w.x, w.y), along_axis(w.y, -w.x)],
-            twice_axial_rate: 2.0 * w.z,
+            per_speed: 2.0 * w.z,
             square_scale,
             disturbance: Vector3::zeros(),
         }
@@ -121,7 +125,7 @@ impl MountedUnit {
         constant
             + (by_cosine + self.coriolis[0] * omega) * cosine
             + (by_sine + self.coriolis[1] * omega) * sine
-            + self.centripetal * (omega * (self.square_scale * omega + self.twice_axial_rate))
+            + self.centripetal * (omega * (self.square_scale * omega + self.per_speed))
             + self.tangential * acceleration
     }
 }

@@ -96,6 +96,7 @@ impl Rival {
                 Extension::SeatStretch(Law::Load) => "R0_1 kappa Omega^2 |R0_1|, by seat",
                 Extension::RadiusScale => "P D R0",
                 Extension::SpeedScale => "d f / d ln Omega^2",
+                Extension::SpeedOffset => "d f / d |Omega|",
                 Extension::EarthRate => "d f / d omega_E",
                 Extension::Gravity => "d f / d g",
                 Extension::ArmTurn(Law::Speed) => "P tau Omega^2",
@@ -147,6 +148,7 @@ impl Rival {
                 | Extension::SeatStretch(_)
                 | Extension::RadiusScale
                 | Extension::SpeedScale
+                | Extension::SpeedOffset
                 | Extension::OneSpeed(_)
                 | Extension::EarthRate
                 | Extension::Gravity => "IEEE Std 836",

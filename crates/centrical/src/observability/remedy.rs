@@ -232,7 +232,12 @@ fn ease(kind: Kind) -> Option<u8> {
         Kind::Shift { .. } => Some(1),
         Kind::Tilt(_) => Some(2),
         Kind::Effect(
-            Effect::RadiusScale | Effect::SpeedScale | Effect::OneSpeed { .. } | Effect::EarthRate | Effect::Gravity,
+            Effect::RadiusScale
+            | Effect::SpeedScale
+            | Effect::SpeedOffset
+            | Effect::OneSpeed { .. }
+            | Effect::EarthRate
+            | Effect::Gravity,
         ) => Some(3),
         Kind::Turn { .. } | Kind::CaseTurn(_) => Some(4),
         Kind::Effect(_) => Some(5),

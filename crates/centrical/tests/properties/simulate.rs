@@ -74,16 +74,18 @@ fn mean_of_a_record_is_the_reading() {
     }
 }
 
-/// At rest an instant has the tilt of its angle, and where no latitude is stated the Earth's rotation is that of the unknown.
+/// At rest an instant has the tilt of its angle, where no latitude is stated the Earth's rotation is that of the unknown, and speeds are off by
+/// their offset.
 #[test]
-fn an_instant_has_tilts_by_angle_and_the_earth_rate() {
+fn an_instant_has_tilts_by_angle_the_earth_rate_and_the_offset_of_speeds() {
     const STEPS: u8 = 4;
     let mut without_latitude = experiment(AxisOneUp, PairRelation::Common, &[1.0]);
     without_latitude.site.latitude = None;
-    let extensions = [Extension::AngleTilt, Extension::EarthRate];
+    let extensions = [Extension::AngleTilt, Extension::EarthRate, Extension::SpeedOffset];
     let model = MeasurementModel::new(without_latitude, ErrorModel::kozlov_2017(), &extensions);
     let mut x = vec![0.0; model.parameters().len()];
-    for (name, value) in [("angle_tilt_1[2]", 3e-3), ("angle_tilt_2[2]", -2e-3), ("earth_rate", 5e-5)] {
+    let values = [("angle_tilt_1[2]", 3e-3), ("angle_tilt_2[2]", -2e-3), ("earth_rate", 5e-5), ("speed_offset", -1e-3)];
+    for (name, value) in values {
         x[model.parameters().find(name).unwrap()] = value;
     }
     for s in &model.experiment().set_points {
