@@ -11,7 +11,7 @@ use crate::uncertainty::Degrees;
 pub struct UnitTrend {
     /// Slope per year.
     pub slope: f64,
-    /// Its standard uncertainty, by the scatter of all units.
+    /// Its standard uncertainty, by the scatter of all units; by its own where it scatters more.
     pub standard_uncertainty: f64,
     /// Probability of so large a slope of a unit that does not drift.
     pub drift_probability: f64,
@@ -46,7 +46,7 @@ impl UnitTrend {
     /// determine a line, and for all where fewer than two can be compared.
     ///
     /// Every unit is weighted as its sessions state, with a component between sessions common to all. A unit that scatters more than
-    /// the others by itself, at `level`, is left out of their scatter.
+    /// the others by itself, at `level`, is left out of their scatter, and its slope has its own.
     pub fn of_all(units: &[Series], variance_between: f64, level: f64) -> Vec<Option<UnitTrend>> {
         let of = |series: &Series| {
             let line = Line::new(series.points(), Curve::Line, variance_between)?;
@@ -66,9 +66,11 @@ impl UnitTrend {
         };
         let is_sound =
             |line: &&(Line, f64)| scatter(line, all).is_none_or(|(_, probability)| count * probability > level);
-        let (misfit, freedom) = sums(&mut lines.iter().flatten().filter(is_sound));
+        let of_sound = sums(&mut lines.iter().flatten().filter(is_sound));
         let trend = |line: &(Line, f64)| {
             let (variance_ratio, scatter_probability) = scatter(line, all)?;
+            // By the scatter of the others a slope of one that merely scatters would count as drift.
+            let (misfit, freedom) = if scatter_probability > level { of_sound } else { (line.0.misfit, line.1) };
             let standard_uncertainty = (misfit / freedom / line.0.spread).sqrt();
             let drift_probability = t_tail(line.0.slope / standard_uncertainty, freedom);
             Some(UnitTrend {

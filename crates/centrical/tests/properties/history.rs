@@ -432,6 +432,17 @@ fn units_that_drift_are_found_among_others() {
     units[31] = drawn(0.0, 20.0).series(8, &mut random);
     let (drifting, scattering) = find(&units);
     assert_eq!((drifting.contains(&7), scattering), (true, vec![31]));
+
+    // A unit of few sessions that only scatters is not called drifting.
+    let mut called = [0; 2];
+    for _ in 0..200 {
+        let mut units: Vec<Series> = (0..12).map(|_| sound.series(4, &mut random)).collect();
+        units[0] = drawn(0.0, 20.0).series(4, &mut random);
+        let (drifting, scattering) = find(&units);
+        called[0] += usize::from(drifting.contains(&0));
+        called[1] += usize::from(scattering.contains(&0));
+    }
+    assert!(called[0] <= 3 && called[1] >= 100, "{called:?}");
 }
 
 /// With fewer units than parameters, and one of them far off, sound ones are called outlying in one plant of twenty too; more than 9
