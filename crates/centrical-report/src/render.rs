@@ -9,7 +9,7 @@ mod pdf;
 mod results;
 
 pub use self::history::{
-    Indexed, ListedUnit, PageKind, StoreCharts, due_comment, due_of_page, history_due_page, history_index,
+    Indexed, ListedUnit, PageKind, StoreCharts, UnitDue, due_comment, due_of_page, history_due_page, history_index,
     history_model_page, history_station_page, history_unit_page, no_unit_history_page,
 };
 pub use self::html::html;

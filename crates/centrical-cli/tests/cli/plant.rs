@@ -225,11 +225,15 @@ fn pages_show_what_the_commands_say() {
     assert!(refused.status.code() == Some(2) && !folder.join("other").exists(), "{refused:?}");
 }
 
-/// With a limit the pages say of each unit what the command says today, in the list of due dates as on the page of the unit.
+/// With a limit the pages say of each unit what the command says today, in the list of due dates as on the page of the unit; of a unit
+/// of a single calibration nothing is known.
 #[test]
 fn due_dates_of_all_units_stand_in_a_list() {
     let folder = plant();
     let folder = folder.path();
+    let once = fs::read_to_string(folder.join("plant/0001/0/result.json")).unwrap().replace("\"0001\"", "\"once\"");
+    fs::write(folder.join("once.json"), once).unwrap();
+    assert!(run(folder, &["history", "add", "store", "once.json"]).status.success());
     let limit = ["--limit", "2 mg"];
     let made = run(folder, &[&["history", "page", "store", "--out", "pages"], limit.as_slice()].concat());
     assert!(made.status.success(), "{made:?}");
@@ -250,7 +254,11 @@ fn due_dates_of_all_units_stand_in_a_list() {
         *(if is_overdue { &mut overdue } else { &mut within }) += 1;
     }
     assert!(overdue > 0, "{overdue} {within}");
-    assert!(due.contains(&format!("of {UNITS} units, for compensated readings within 2000 µg: {overdue} overdue.")));
+    assert!(due.contains(&format!(
+        "of {} units, for compensated readings within 2000 µg: {overdue} overdue, 1 not known.",
+        UNITS + 1
+    )));
+    assert!(due.lines().any(|line| line.contains(">once</th>") && line.contains("<td>not known</td>")), "{due}");
     assert!(page(folder, "index.html").contains("<a href=\"due.html\">"));
 }
 

@@ -9,7 +9,7 @@ mod pages;
 mod units;
 
 pub use self::charts::StoreCharts;
-pub use self::due::{due_comment, due_of_page, history_due_page};
+pub use self::due::{UnitDue, due_comment, due_of_page, history_due_page};
 pub use self::frame::PageKind;
 pub use self::index::{Indexed, history_index};
 pub use self::pages::{history_model_page, history_station_page, history_unit_page, no_unit_history_page};

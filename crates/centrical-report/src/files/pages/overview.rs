@@ -12,8 +12,8 @@ use centrical_session::{
 use rayon::prelude::*;
 
 use crate::render::{
-    Indexed, ListedUnit, PageKind, StoreCharts, due_of_page, history_due_page, history_index, history_model_page,
-    history_station_page,
+    Indexed, ListedUnit, PageKind, StoreCharts, UnitDue, due_of_page, history_due_page, history_index,
+    history_model_page, history_station_page,
 };
 
 /// What the pages of a store show beside its calibrations.
@@ -62,15 +62,18 @@ pub struct Overview {
     pub pages: BTreeMap<String, String>,
     /// Keys of the calibrations of each unit that has a page, by its file.
     pub units: BTreeMap<String, BTreeSet<String>>,
-    /// The limit that the same units may be due for, if there is one [m/s^2], and the units as they are listed.
-    pub with_limit: Option<(f64, Vec<(String, ListedUnit)>)>,
+    /// The limit that units may be due for, if there is one [m/s^2], and all units as they are listed, with the file of the page where a unit has one.
+    pub with_limit: Option<(f64, Vec<(Option<String>, ListedUnit)>)>,
 }
 
 impl Overview {
     /// The list of due dates, by the page of each unit or its beginning; `None` without a limit, or where a page does not say.
     pub fn due(&self, page: impl Fn(&str) -> Option<String>) -> Option<String> {
         let (limit, units) = self.with_limit.as_ref()?;
-        let due = units.iter().map(|(file, unit)| Some((unit, due_of_page(&page(file)?)?)));
+        let due = units.iter().map(|(file, unit)| {
+            let due = file.as_ref().map_or(Some(UnitDue::NotKnown), |file| due_of_page(&page(file)?));
+            Some((unit, due?))
+        });
         Some(history_due_page(due.collect::<Option<_>>()?, *limit, Date::today()))
     }
 
@@ -94,8 +97,8 @@ impl Overview {
         advance(progress, 0)?;
         let with_limit = request.limit.map(|limit| {
             let file = |unit: &ListedUnit| PageKind::Unit.file(&[&unit.model, &unit.serial]);
-            let all = listed.units(|_| true).into_iter().map(|unit| (file(&unit), unit));
-            (limit, all.filter(|(file, _)| units.contains_key(file)).collect())
+            let with_page = |unit: ListedUnit| (Some(file(&unit)).filter(|file| units.contains_key(file)), unit);
+            (limit, listed.units(|_| true).into_iter().map(with_page).collect())
         });
         let due = with_limit.as_ref().map(|_| DUE_PAGE);
         let index = history_index(&list, &models, &stations, due, |file| units.contains_key(file));

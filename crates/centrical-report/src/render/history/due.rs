@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use centrical_session::{Date, MICRO_G, UnitHistoryReport};
 
-use super::frame::{linked_serial, opening, page};
+use super::frame::{opening, page};
 use super::units::ListedUnit;
 use crate::number::{counted, two_digits};
 use crate::plot::Escaped;
@@ -72,14 +72,16 @@ pub fn due_of_page(page: &str) -> Option<UnitDue> {
     })
 }
 
-/// The list of units with what is said of each for a `limit` [m/s^2], on a day: the overdue ones first, then by day.
+/// The list of units with what is said of each for a `limit` [m/s^2], on a day: the overdue ones first, then by day, those not known last.
 pub fn history_due_page(mut units: Vec<(&ListedUnit, UnitDue)>, limit: f64, on: Date) -> String {
     units.sort_by_key(|(_, due)| *due);
     let overdue = units.iter().filter(|(_, due)| matches!(due, UnitDue::Overdue(_))).count();
+    let unknown = units.iter().filter(|(_, due)| *due == UnitDue::NotKnown).count();
     let mut body = opening("Store", "Due dates");
     let _ = writeln!(
         body,
-        "<p>On {on}, of {}, for compensated readings within {} µg: {overdue} overdue.</p>",
+        "<p>On {on}, of {}, for compensated readings within {} µg: {overdue} overdue, {unknown} not known. A due date needs calibrations of \
+         several days.</p>",
         counted(units.len(), "unit"),
         two_digits(limit / MICRO_G)
     );
@@ -98,7 +100,7 @@ fn row(body: &mut String, unit: &ListedUnit, due: UnitDue) {
     let _ = writeln!(
         body,
         "<tr><th scope=\"row\">{}</th><td>{}</td><td>{}</td><td{class}>{word}</td><td>{}</td></tr>",
-        linked_serial(&unit.model, &unit.serial, |_| true),
+        unit.linked,
         Escaped(&unit.model),
         Escaped(&unit.last),
         day.map_or_else(String::new, |day| day.to_string())

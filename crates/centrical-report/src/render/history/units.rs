@@ -24,7 +24,7 @@ pub struct ListedUnit {
     pub last: String,
     is_last_acceptable: bool,
     /// The serial number with a link to the page of the unit, if it has one.
-    linked: String,
+    pub(super) linked: String,
 }
 
 impl ListedUnit {

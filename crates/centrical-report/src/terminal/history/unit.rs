@@ -363,7 +363,7 @@ fn readings(screen: &mut Screen, report: &UnitHistoryReport) {
     screen.head(
         "AFTER A SWITCH-ON",
         "standard uncertainty of a reading compensated by the last calibration, µg: stated; between sessions with its interval; after a switch-on, \
-         sqrt(stated^2 + 2 between^2), and expanded; of each newtonometer at rest, and where it is largest",
+         sqrt(stated^2 + 2 between^2), and expanded; of each newtonometer at rest, and where it is largest or first due",
     );
     let expanded = percent(report.coverage);
     let columns: [(Align, &[&str]); 5] = [

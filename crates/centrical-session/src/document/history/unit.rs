@@ -285,15 +285,20 @@ impl UnitHistoryReport {
     }
 }
 
-/// The readings to show of each newtonometer: at rest, and the one least certain after a switch-on.
+/// The readings to show of each newtonometer: at rest, the one least certain after a switch-on, and the one that is first due.
 pub(crate) fn shown_readings(readings: &[ReadingHistory]) -> Vec<usize> {
     let mut shown = Vec::new();
     for axis in 1..=3 {
         let of_axis = || (0..readings.len()).filter(|n| readings[*n].axis == axis);
         let at_rest = of_axis().find(|n| readings[*n].force == [0.0; 3]);
         let worst = of_axis().max_by(|a, b| readings[*a].after_switch_on.total_cmp(&readings[*b].after_switch_on));
-        let other = worst.filter(|worst| at_rest != Some(*worst));
-        shown.extend(at_rest.into_iter().chain(other));
+        let with_due = of_axis().filter_map(|n| Some((readings[n].due.as_ref()?.date, n)));
+        let first_due = with_due.min().map(|(_, n)| n);
+        for n in [at_rest, worst, first_due].into_iter().flatten() {
+            if !shown.contains(&n) {
+                shown.push(n);
+            }
+        }
     }
     shown
 }
