@@ -41,6 +41,19 @@ fn outputs_over_the_files_of_a_session_are_refused() {
     }
 }
 
+/// A store in the folder of a session would have its rows among the records.
+#[test]
+fn a_store_has_a_folder_of_its_own() {
+    let copy = Copy::new();
+    assert!(copy.calibrate(&["--out", ".", "-q"]).status.success());
+    let session = copy.session().display().to_string();
+    let run = copy.run(&["history", "add", &session, "result.json"]);
+    let message = String::from_utf8_lossy(&run.stderr).into_owned();
+    assert_eq!(run.status.code(), Some(2), "{message}");
+    assert!(message.contains("found the folder of a session, expected a folder of its own for the store"), "{message}");
+    assert!(!copy.session().join("rows").exists());
+}
+
 /// The certificate of an earlier result beside a new one is remarked.
 #[test]
 fn an_old_certificate_is_remarked() {

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use centrical_table::{create_folder, refuse_inputs};
 
 use crate::error::{Error, Place};
+use crate::experiment::EXPERIMENT_FILE;
 
 /// A store of calibrations.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -40,9 +41,17 @@ impl Store {
     /// Opens a store, and makes it if it is not there.
     ///
     /// # Errors
-    /// [`Error`] if the folder cannot be made.
+    /// [`Error`] if the folder cannot be made, or is that of a session.
     pub fn create(folder: &Path) -> Result<Self, Error> {
         let store = Self { folder: folder.to_owned() };
+        if !store.rows_folder().is_dir() && folder.join(EXPERIMENT_FILE).exists() {
+            return Err(Error::content(
+                folder,
+                Place::Whole,
+                "the folder of a session",
+                "a folder of its own for the store",
+            ));
+        }
         create_folder(&store.rows_folder())?;
         Ok(store)
     }
