@@ -66,10 +66,20 @@ pub fn turning_radius(text: &str) -> Result<f64, NotThatQuantity> {
 
 /// A largest error [m/s^2].
 pub fn largest_error(text: &str) -> Result<f64, String> {
+    with_unit(text, "300 ug")?.largest_error().map_err(|wrong| wrong.to_string())
+}
+
+/// The largest specific force of a range [m/s^2].
+pub fn force_range(text: &str) -> Result<f64, String> {
+    with_unit(text, "200 g")?.si(Dimension::Acceleration).map_err(|wrong| wrong.to_string())
+}
+
+/// A quantity that is an acceleration and states its unit: of a plain number nobody sees whether it is in g or in m/s^2.
+fn with_unit(text: &str, example: &str) -> Result<Quantity, String> {
     if text.trim().parse::<f64>().is_ok() {
-        return Err(format!("found {text:?}, expected an acceleration with its unit, such as '300 ug'"));
+        return Err(format!("found {text:?}, expected an acceleration with its unit, such as '{example}'"));
     }
-    written(text).largest_error().map_err(|wrong| wrong.to_string())
+    Ok(written(text))
 }
 
 /// A number above zero that stands for a quantity: no more than a million of its unit.

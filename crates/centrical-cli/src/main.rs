@@ -27,7 +27,7 @@ use output::{Outcome, say, written};
 
 /// Calibrate newtonometer (accelerometer) triads on a precision centrifuge.
 #[derive(Debug, Parser)]
-#[command(name = "centrical", version, arg_required_else_help = true, after_help = EXIT_CODES)]
+#[command(name = "centrical", version, arg_required_else_help = true, after_help = EXIT_CODES, max_term_width = 100)]
 struct Arguments {
     #[command(subcommand)]
     command: Command,

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use centrical_report::{compensation_text, objections_text};
 use centrical_session::{Axes, CompensationRequest, Error, compensate, unwatched};
 
-use crate::given::acceleration;
+use crate::given::force_range;
 use crate::output::{Outcome, Printing};
 
 /// Convert a record of readings to specific force with a calibration result.
@@ -26,7 +26,7 @@ pub struct Arguments {
     session: Option<PathBuf>,
     /// Largest specific force on each axis, such as "200 g"; readings beyond it become nan
     /// [default: twice the largest plateau reading of the calibration, or less where the inverse is not certified so far, but no less than that reading]
-    #[arg(long, value_name = "QUANTITY", value_parser = acceleration)]
+    #[arg(long, value_name = "QUANTITY", value_parser = force_range)]
     range: Option<f64>,
     /// Refuse a record whose readings exceed those of the calibration by more than a hundredth, and write nothing
     #[arg(long)]

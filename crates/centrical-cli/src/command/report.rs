@@ -8,7 +8,7 @@ use centrical_report::{
 };
 use centrical_session::{Axes, CalibrationResult, DocumentsReport, Error, Place};
 
-use crate::given::{LanguageName, acceleration};
+use crate::given::{LanguageName, force_range};
 use crate::output::{Outcome, Printing, remark};
 
 /// Write the documents of a calibration from its result.json.
@@ -44,7 +44,7 @@ pub struct Arguments {
     code: Option<PathBuf>,
     /// Largest specific force on each axis that the source code takes, such as "200 g"
     /// [default: twice the largest plateau reading of the calibration, or less where the inverse is not certified so far, but no less than that reading]
-    #[arg(long, value_name = "QUANTITY", value_parser = acceleration, requires = "code")]
+    #[arg(long, value_name = "QUANTITY", value_parser = force_range, requires = "code")]
     range: Option<f64>,
     #[command(flatten)]
     documents: Documents,

@@ -107,6 +107,7 @@ fn refusals() {
         assert!(!copy.out().join("f.csv").exists());
     };
     refused(&["f.csv", "--range", "5 parsecs"], "expected an acceleration such as");
+    refused(&["f.csv", "--range", "5"], "found \"5\", expected an acceleration with its unit, such as '200 g'");
     refused(&["f.csv", "--range", "1e9 g"], "result.json: over twice the range the gain changes by up to");
     let result = copy.out().join("result.json");
     let text = fs::read_to_string(&result).unwrap();
