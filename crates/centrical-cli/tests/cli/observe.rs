@@ -116,6 +116,22 @@ fn session() {
     assert_eq!(report["weighted_by"], "the noise of its data");
 }
 
+/// `[plan]` counts until something is measured: then the data do, as for the same session in memory.
+#[test]
+fn a_session_with_records_and_a_plan_is_weighted_by_its_data() {
+    let copy = Copy::new();
+    let session = copy.session().display().to_string();
+    let (measured, _) = json(&copy, &["observe", &session]);
+    copy.edit("experiment.toml", |text| format!("{text}\n[plan]\nnoise = \"20 ug/sqrt(Hz)\"\nfloor = \"1 ug\"\n"));
+    assert_eq!(json(&copy, &["observe", &session]).0, measured);
+    let montecarlo = ["montecarlo", &session, "--runs", "2"];
+    assert_eq!(json(&copy, &montecarlo).0["weighted_by"], "the noise of its data");
+    fs::remove_dir_all(copy.session().join("records")).unwrap();
+    for command in [&["observe", &session][..], &montecarlo] {
+        assert_eq!(json(&copy, command).0["weighted_by"], "a planned noise of 20.000 ug/sqrt(Hz)");
+    }
+}
+
 /// A prior in a session reaches the result, which says what rests on it.
 #[test]
 fn calibrate_tells_what_rests_on_a_prior() {

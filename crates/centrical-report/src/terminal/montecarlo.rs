@@ -20,6 +20,7 @@ pub fn monte_carlo_text(case: &MonteCarloCase, monte_carlo: &MonteCarlo, coverag
     }
     let runs = counted(monte_carlo.runs, "calibration");
     screen.head("MONTE CARLO", &format!("{runs}, {} did not converge", monte_carlo.failures));
+    screen.say(2, &format!("drawn with {}", case.weighted_by));
     statistics(&mut screen, parameters, monte_carlo);
     let (percent, chance) = (100.0 * coverage, chance_of_coverage(coverage, monte_carlo));
     screen.say(

@@ -24,6 +24,8 @@ pub struct MonteCarloReport {
     pub seed: u64,
     /// Which fit is repeated.
     pub fit: RepeatedFit,
+    /// Which noise was drawn, in words.
+    pub weighted_by: String,
     /// Runs that converged: all figures are of these.
     pub runs: usize,
     /// Runs that did not converge.
@@ -95,7 +97,13 @@ pub struct SquareSummary {
 
 impl MonteCarloReport {
     /// What runs with these `settings` gave, of a unit with these true values.
-    pub(crate) fn of(parameters: &Parameters, truth: &[f64], settings: &Settings, monte_carlo: &MonteCarlo) -> Self {
+    pub(crate) fn of(
+        parameters: &Parameters,
+        truth: &[f64],
+        weighted_by: &str,
+        settings: &Settings,
+        monte_carlo: &MonteCarlo,
+    ) -> Self {
         let runs = monte_carlo.runs;
         let parameter = |j: usize| {
             let statistics = monte_carlo.parameters[j].filter(|_| runs > 0);
@@ -117,6 +125,7 @@ impl MonteCarloReport {
             program: Program::this(),
             seed: settings.seed,
             fit: if settings.is_linear { RepeatedFit::Linear } else { RepeatedFit::Exact },
+            weighted_by: weighted_by.to_owned(),
             runs,
             failures: monte_carlo.failures,
             coverage: settings.coverage,

@@ -12,7 +12,6 @@ use crate::document::prediction::PredictionReport;
 use crate::document::result::{PriorSummary, Program};
 use crate::error::{Error, Place};
 use crate::experiment::PlannedSession;
-use crate::units::MICRO_G;
 
 /// Name of the schema's present version.
 pub(crate) const OBSERVABILITY_SCHEMA: &str = "centrical-observability/1";
@@ -35,6 +34,9 @@ pub struct Subject {
 }
 
 impl Subject {
+    /// What weighs the plateaus of a session.
+    pub(crate) const DATA: &str = "the noise of its data";
+
     /// The budget to be expected of a calibration, and the uncertainty of the compensated reading up to the largest load of
     /// the experiment.
     fn prediction(&self) -> Result<PredictionReport, Error> {
@@ -60,11 +62,10 @@ pub(crate) fn largest_force(experiment: &Experiment) -> f64 {
 
 impl From<PlannedSession> for Subject {
     fn from(plan: PlannedSession) -> Self {
-        let density = plan.noise.density / MICRO_G;
         Self {
+            weighted_by: plan.weighted_by(),
             file: plan.file,
             title: plan.title,
-            weighted_by: format!("a planned noise of {density:.3} ug/sqrt(Hz)"),
             model: plan.model,
             nominal: plan.nominal,
             weights: plan.weights,

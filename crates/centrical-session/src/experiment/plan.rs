@@ -21,7 +21,7 @@ use super::{prior, schedule, terms};
 use crate::error::{Error, Place, quoted};
 use crate::quantity::Quantity;
 use crate::settings::from_toml;
-use crate::units::Dimension;
+use crate::units::{Dimension, MICRO_G};
 
 /// Name of the source's normalised experiment [K5.5].
 const NORMALISED: &str = "kozlov-2017-normalised";
@@ -92,7 +92,8 @@ impl Probe {
 }
 
 impl PlannedSession {
-    /// Reads a plan, a file or the folder of one; `None` if it is a session with records or plateaus of its own.
+    /// Reads a plan, a file or the folder of one; `None` if it is a session with records or plateaus of its own. With `[plan]` it is a
+    /// plan until the first of them is there: what was measured has its own noise.
     ///
     /// # Errors
     /// If the file cannot be read, does not follow the form or makes no sense, as for [`Session::read`]. Unlike a session
@@ -112,7 +113,16 @@ impl PlannedSession {
             let expected = "a schedule in [[mounting]], which the command plan makes of candidates";
             return Err(Error::content(path, Place::Whole, "[candidates] without a schedule", expected));
         }
-        Self::of_form(path, &form).map(Some)
+        let session = Session::without_plateaus(path, Folder::of(path), &form)?;
+        if probe.is_measured() && (form.plateaus.is_some() || session.has_readings()) {
+            return Ok(None);
+        }
+        Self::of_session(session, &form).map(Some)
+    }
+
+    /// Where the weights are from, in words.
+    pub(crate) fn weighted_by(&self) -> String {
+        format!("a planned noise of {:.3} ug/sqrt(Hz)", self.noise.density / MICRO_G)
     }
 
     /// Takes the unknowns to be as expected.
@@ -120,8 +130,9 @@ impl PlannedSession {
         self.nominal = expected_of(&self.model, expected);
     }
 
-    fn of_form(file: &Path, form: &Form) -> Result<Self, Error> {
-        let mut session = Session::without_plateaus(file, Folder::of(file), form)?;
+    /// The plan of a session without its set points.
+    fn of_session(mut session: Session, form: &Form) -> Result<Self, Error> {
+        let file = &session.file.clone();
         session.experiment.set_points =
             schedule::set_points(file, &form.mounting, session.experiment.centrifuge.rotation)?;
         session.durations = schedule::durations(file, &form.mounting)?;

@@ -72,7 +72,7 @@ impl Session {
     }
 
     /// Whether it has records or means, and is no plan.
-    fn has_readings(&self) -> bool {
+    pub(super) fn has_readings(&self) -> bool {
         let has_rests = self.rest_tables.iter().any(|table| !table.is_planned());
         self.record_bytes() > 0 || self.plateaus.is_some() || has_rests
     }

@@ -8,7 +8,7 @@ use centrical::{Calibration, Data, FitError, MeasurementModel, Observation, OnPr
 use nalgebra::Vector3;
 
 use super::calibrate::Problem;
-use crate::document::MonteCarloReport;
+use crate::document::{MonteCarloReport, Subject};
 use crate::error::{Error, Place};
 use crate::experiment::{PlannedSession, Session};
 
@@ -47,6 +47,8 @@ pub struct MonteCarloCase {
     pub model: MeasurementModel,
     /// True values of the unknowns, SI.
     pub truth: Vec<f64>,
+    /// Which noise is drawn, in words.
+    pub weighted_by: String,
     file: PathBuf,
     /// Their means are not used.
     observations: Vec<Observation>,
@@ -62,7 +64,7 @@ impl MonteCarloCase {
         let Problem { model, reduced, .. } = Problem::as_stated(session, progress)?;
         let (observations, file) = (reduced.observations(), session.file.clone());
         let truth = estimated(&model, observations.clone()).map_err(|source| Error::fit(&file, source))?;
-        Ok(Self { model, truth, file, observations })
+        Ok(Self { model, truth, weighted_by: Subject::DATA.to_owned(), file, observations })
     }
 
     /// A plan: the unit that it is predicted for. `noise` is the white noise of every mean in micro-g, in place of the
@@ -71,6 +73,8 @@ impl MonteCarloCase {
     /// # Errors
     /// [`Error::Fit`] when a weight is invalid.
     pub fn planned(plan: PlannedSession, noise: Option<f64>) -> Result<Self, Error> {
+        let weighted_by =
+            noise.map_or_else(|| plan.weighted_by(), |noise| format!("a noise of {noise} ug of every mean"));
         let PlannedSession { file, model, nominal, weights, .. } = plan;
         let truth = Prediction::unit_of(&model, &weights, &nominal).map_err(|source| Error::fit(&file, source))?;
         let equal = |noise: f64| Weight::equal(weights.len(), noise * 1e-6 * STANDARD_GRAVITY);
@@ -78,7 +82,7 @@ impl MonteCarloCase {
         let observation =
             |Weight { set_point, covariance }| Observation { set_point, mean: Vector3::zeros(), covariance };
         let observations = weights.into_iter().map(observation).collect();
-        Ok(Self { model, truth, file, observations })
+        Ok(Self { model, truth, weighted_by, file, observations })
     }
 
     /// Refuses `noise` for a session, whose means have their own.
@@ -109,7 +113,7 @@ impl MonteCarloCase {
 
     /// What the runs of `request` show, as a document.
     pub fn report(&self, request: &MonteCarloRequest, monte_carlo: &MonteCarlo) -> MonteCarloReport {
-        MonteCarloReport::of(self.model.parameters(), &self.truth, &request.settings(), monte_carlo)
+        MonteCarloReport::of(self.model.parameters(), &self.truth, &self.weighted_by, &request.settings(), monte_carlo)
     }
 }
 

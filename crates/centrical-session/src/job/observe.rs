@@ -32,7 +32,7 @@ pub fn subject_of(session: &Session, progress: OnProgress) -> Result<Subject, Er
     Ok(Subject {
         file: session.file.clone(),
         title: session.title.clone(),
-        weighted_by: "the noise of its data".to_owned(),
+        weighted_by: Subject::DATA.to_owned(),
         nominal: vec![0.0; model.parameters().len()],
         model,
         weights: reduced.observations().iter().map(Weight::from).collect(),
