@@ -4,8 +4,7 @@ use std::path::{Path, PathBuf};
 
 use centrical_report::{refuse_outputs, states_text};
 use centrical_session::{
-    CalibrationResult, Error, Method, OnProgress, Place, PlateauName, Session, Store, add_result, calibrate,
-    claim_folder, refuse_date,
+    Error, Method, OnProgress, PlateauName, Session, Store, add_result, calibrate, claim_folder, refuse_date,
 };
 
 use super::report::Documents;
@@ -68,13 +67,10 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     };
     let laboratory = arguments.documents.laboratory.as_deref();
     let inputs = [session.files(), laboratory.into_iter().collect()].concat();
-    refuse_outputs(file.as_deref(), out, &inputs)?;
+    refuse_outputs(file.as_deref(), out, &inputs, [&session.unit_model, &session.unit_serial])?;
     if let Some(store) = arguments.store.as_deref() {
         Store::refuse_inputs(store, &inputs)?;
         refuse_date(&session.file, &session.date)?;
-    }
-    if out.is_none() {
-        file.as_deref().map_or(Ok(()), |file| refuse_another_unit(file, &session))?;
     }
     let job = |progress: OnProgress| calibrate(&session, &arguments.hold_out, method, progress);
     let result = progress::reading(&session, arguments.printing, job)?;
@@ -88,20 +84,4 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let outcome = arguments.documents.hand_over(&result, arguments.printing, out, file.as_deref());
     drop(claim);
     outcome
-}
-
-/// The current folder may be anybody's: a result there is replaced by one of the same unit alone.
-pub fn refuse_another_unit(file: &Path, session: &Session) -> Result<(), Error> {
-    if !file.exists() {
-        return Ok(());
-    }
-    let there = CalibrationResult::read(file).map_or("a file that is no result of this program".to_owned(), |result| {
-        format!("the result of unit {:?} {:?}", result.session.unit_model, result.session.unit_serial)
-    });
-    let own = format!("the result of unit {:?} {:?}", session.unit_model, session.unit_serial);
-    if there == own {
-        return Ok(());
-    }
-    let expected = format!("{own}, or no such file: give a folder with --out, or remove it");
-    Err(Error::content(file, Place::Whole, there, expected))
 }

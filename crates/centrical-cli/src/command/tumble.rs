@@ -87,7 +87,7 @@ fn of_records(arguments: &Arguments) -> Result<Outcome, Error> {
     }
     let out = arguments.out.as_deref();
     let _claim = out.map(claim_folder).transpose()?;
-    arguments.refuse_outputs(request.inputs())?;
+    arguments.refuse_outputs(request.inputs(), [&request.model, &request.serial])?;
     let mut tumble = tumble(&request, out.unwrap_or(Path::new("")), &unwatched)?;
     tumble.result = arguments.documents.in_axes(tumble.result, &request.files[0])?;
     out.map_or(Ok(()), |folder| tumble.write(&request, folder))?;
@@ -100,7 +100,7 @@ fn of_session(arguments: &Arguments, path: &Path) -> Result<Outcome, Error> {
     let session = Session::read(path)?.off_arm(&arguments.terms)?;
     let out = arguments.out.as_deref();
     let _claim = out.map(claim_folder).transpose()?;
-    arguments.refuse_outputs(session.files().into_iter())?;
+    arguments.refuse_outputs(session.files().into_iter(), [&session.unit_model, &session.unit_serial])?;
     let result = calibrate(&session, &[], Method::Exact, &unwatched)?;
     let result = arguments.documents.in_axes(result, path)?;
     out.map_or(Ok(()), |folder| result.write(&folder.join(RESULT)))?;
@@ -134,11 +134,11 @@ impl Arguments {
         })
     }
 
-    /// Refuses outputs over what is read.
-    fn refuse_outputs<'a>(&'a self, inputs: impl Iterator<Item = &'a Path>) -> Result<(), Error> {
+    /// Refuses outputs over what is read, and over the result of another unit.
+    fn refuse_outputs<'a>(&'a self, inputs: impl Iterator<Item = &'a Path>, unit: [&str; 2]) -> Result<(), Error> {
         let inputs: Vec<&Path> = inputs.chain(self.documents.laboratory.as_deref()).collect();
         let result = self.out.as_ref().map(|folder| folder.join(RESULT));
-        refuse_outputs(result.as_deref(), self.out.as_deref(), &inputs)
+        refuse_outputs(result.as_deref(), self.out.as_deref(), &inputs, unit)
     }
 
     /// Columns, unit, place and attitudes of a session stand in its experiment file.

@@ -15,7 +15,6 @@ use centrical_session::{Error, Session, watch};
 pub use self::arguments::Arguments;
 use self::events::{say_end, say_event};
 use crate::alarm::Alarm;
-use crate::command::calibrate::refuse_another_unit;
 use crate::interruption::asked_to_end;
 use crate::output::Outcome;
 #[cfg(feature = "serve")]
@@ -26,7 +25,6 @@ use crate::serving::{remain, serve};
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let session = Session::read_before_rests(&arguments.session)?;
-    refuse_another_unit(&arguments.out.join("result.json"), &session)?;
     #[cfg(feature = "serve")]
     let mut server = arguments.serving.bind()?;
     #[cfg(feature = "serve")]

@@ -63,18 +63,32 @@ fn a_copied_record_is_refused() {
     assert!(message.contains("m02.csv: found the readings of mounting 1, "), "{message}");
 }
 
-/// The result of another unit is not written over.
+/// The result of another unit is not written over, and neither is a file that is no result.
 #[test]
 fn a_result_of_another_unit_stays() {
     let copy = Copy::new();
-    assert_eq!(copy.calibrate(&[]).status.code(), Some(0));
-    let result = fs::read(copy.out().join("result.json")).unwrap();
+    assert!([(); 2].iter().all(|()| copy.calibrate(&["--out", "."]).status.code() == Some(0)), "its own is replaced");
+    let result = copy.out().join("result.json");
     copy.edit("experiment.toml", |text| text.replacen("serial = \"0001\"", "serial = \"0002\"", 1));
-    let run = copy.run(&["watch", copy.session().to_str().unwrap(), "--quiet", "0", "--once"]);
-    let message = String::from_utf8(run.stderr).unwrap();
-    assert_eq!(run.status.code(), Some(2), "{message}");
-    assert!(message.contains("result.json: found the result of unit \"TA-200\" \"0001\", "), "{message}");
-    assert!(fs::read(copy.out().join("result.json")).unwrap() == result);
+    let (session, record) = (copy.session(), copy.session().join("records/m01.csv"));
+    let (session, record) = (session.to_str().unwrap(), record.to_str().unwrap());
+    let found = "result.json: found the result of unit \"TA-200\" \"0001\", ";
+    for found in [found, "result.json: found a file that is no result of this program, "] {
+        let before = fs::read(&result).unwrap();
+        for command in [
+            &["watch", session, "--quiet", "0", "--once"][..],
+            &["calibrate", session],
+            &["calibrate", session, "--out", "."],
+            &["tumble", record, "--serial", "0002", "--out", "."],
+        ] {
+            let run = copy.run(command);
+            let message = String::from_utf8(run.stderr).unwrap();
+            assert_eq!(run.status.code(), Some(2), "{command:?}: {message}");
+            assert!(message.contains(found), "{command:?}: {message}");
+            assert!(fs::read(&result).unwrap() == before, "{command:?}");
+        }
+        fs::write(&result, "{}").unwrap();
+    }
 }
 
 /// Records that come piece by piece, lines in part; Ctrl-C in the middle, and the same command again: the end is the same as

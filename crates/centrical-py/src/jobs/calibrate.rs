@@ -37,6 +37,7 @@ pub fn calibrate(
                 Some(&folder.join("result.json")),
                 Some(folder),
                 &[session.files(), laboratory.as_deref().into_iter().collect()].concat(),
+                [&session.unit_model, &session.unit_serial],
             )?;
         }
         let result = session::calibrate(&session, &hold_out, method, &|bytes| work.advance(bytes))?;

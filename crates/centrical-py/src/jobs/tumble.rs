@@ -76,7 +76,9 @@ pub fn tumble(
         let folder = out.as_deref().unwrap_or(Path::new(""));
         let claim = out.as_deref().map(claim_folder).transpose()?;
         if out.is_some() {
-            refuse_outputs(Some(&folder.join("result.json")), Some(folder), &request.inputs().collect::<Vec<_>>())?;
+            let inputs: Vec<&Path> = request.inputs().collect();
+            let unit = [request.model.as_str(), &request.serial];
+            refuse_outputs(Some(&folder.join("result.json")), Some(folder), &inputs, unit)?;
         }
         let tumble = centrical_session::tumble(&request, folder, &|bytes| work.advance(bytes))?;
         if out.is_some() {

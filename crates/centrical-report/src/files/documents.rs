@@ -136,14 +136,21 @@ pub fn write_documents(request: &DocumentRequest) -> Result<Documents, Error> {
     Ok(Documents { unit: issuer.and_then(|issuer| issuer.unit), other_days, result })
 }
 
-/// Refuses the file of a `result`, or what [`write_all_documents`] writes to a `folder` beside plots, over what is read.
+/// Refuses the file of a `result`, or what [`write_all_documents`] writes to a `folder` beside plots, over what is read, and over the result of
+/// another unit than that of this model and serial number.
 ///
 /// # Errors
-/// [`Error`] when one of the `inputs` would be overwritten.
-pub fn refuse_outputs(result: Option<&Path>, folder: Option<&Path>, inputs: &[&Path]) -> Result<(), Error> {
+/// [`Error`] when one of the `inputs`, or such a result, would be overwritten.
+pub fn refuse_outputs(
+    result: Option<&Path>,
+    folder: Option<&Path>,
+    inputs: &[&Path],
+    [model, serial]: [&str; 2],
+) -> Result<(), Error> {
     let documents = [REPORT, CERTIFICATE, DIGITAL_CERTIFICATE].map(|name| Some(folder?.join(name)));
     let outputs: Vec<PathBuf> = result.map(Path::to_owned).into_iter().chain(documents.into_iter().flatten()).collect();
-    refuse_inputs(&outputs, inputs)
+    refuse_inputs(&outputs, inputs)?;
+    result.map_or(Ok(()), |file| CalibrationResult::refuse_another_unit(file, model, serial))
 }
 
 const REPORT: &str = "report.html";

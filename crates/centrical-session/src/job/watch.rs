@@ -17,6 +17,7 @@ pub use self::arrivals::Watch;
 pub use self::board::WatchProgress;
 use self::quiet::Quiet;
 pub use self::request::{WatchEnd, WatchEvent, WatchRequest};
+use crate::document::CalibrationResult;
 use crate::error::Error;
 use crate::experiment::{Session, refuse_inputs};
 
@@ -28,7 +29,7 @@ const OUTPUTS: [&str; 5] = ["watch.json", "watch-history.jsonl", "watch-history.
 ///
 /// # Errors
 /// [`Error`] when the request names an unknown group or plateau, or a finished record is wrong. Likewise when the folder is in use,
-/// holds an input or the state of another session, or does not take the state.
+/// holds an input, the state of another session or the result of another unit, or does not take the state.
 pub fn watch(
     session: &Session,
     request: &WatchRequest,
@@ -36,7 +37,9 @@ pub fn watch(
     report: &mut dyn FnMut(WatchEvent),
 ) -> Result<WatchEnd, Error> {
     let _claim = claim_folder(&request.out)?;
-    refuse_inputs(&OUTPUTS.map(|name| request.out.join(name)), &session.files())?;
+    let outputs @ [.., result] = &OUTPUTS.map(|name| request.out.join(name));
+    refuse_inputs(outputs, &session.files())?;
+    CalibrationResult::refuse_another_unit(result, &session.unit_model, &session.unit_serial)?;
     let mut quiet = Quiet::new(request.quiet, request.once);
     loop {
         let session = rests::with_rests_there(session, &mut quiet, &|_| quiet::until(stop))?;

@@ -111,6 +111,31 @@ impl CalibrationResult {
         Ok(result)
     }
 
+    /// Refuses the result of another unit than that of this `model` and `serial` number in `file`, and a file that is no result: nothing restores
+    /// either. A result of the unit itself may be replaced.
+    ///
+    /// # Errors
+    /// [`Error`] with the unit that was found, and the one that was expected.
+    pub fn refuse_another_unit(file: &Path, model: &str, serial: &str) -> Result<(), Error> {
+        if !file.exists() {
+            return Ok(());
+        }
+        let of_unit = |model: &str, serial: &str| format!("the result of unit {model:?} {serial:?}");
+        let there = Self::read(file).map_or("a file that is no result of this program".to_owned(), |result| {
+            of_unit(&result.session.unit_model, &result.session.unit_serial)
+        });
+        let own = of_unit(model, serial);
+        if there == own {
+            return Ok(());
+        }
+        Err(Error::content(
+            file,
+            Place::Whole,
+            there,
+            format!("{own}, or no such file: give another folder, or remove it"),
+        ))
+    }
+
     /// The sources that the session states beyond what the fit weighs.
     pub fn stated_sources(&self) -> Vec<Source> {
         let sources = self.budget.iter().flat_map(|budget| &budget.sources);
