@@ -152,6 +152,11 @@ pub fn written(outcome: io::Result<()>) -> Result<(), Error> {
     }
 }
 
+/// Says what a command waits for.
+pub fn say_waiting(note: &str) {
+    say(&format!("{note}\n"));
+}
+
 /// Says something on standard error. If that is closed or full there is nobody to tell; the exit code still does.
 pub fn say(text: &str) {
     let _ = io::stderr().lock().write_all(harmless(text).as_bytes());

@@ -36,7 +36,7 @@ pub use centrical::stability::Estimator;
 pub use centrical::{OnProgress, STANDARD_GRAVITY, Stopped, advance, unwatched};
 pub use centrical_table::{
     Bytes, ClaimedFolder, ColumnName, Source, TableFormat, abandon_files, claim_folder, create_folder, harmless,
-    harmless_line, write_stream, write_whole,
+    harmless_line, write_stream, write_together, write_whole,
 };
 pub use document::*;
 pub use error::*;

@@ -13,7 +13,7 @@ mod schema;
 mod writing;
 
 pub(crate) use self::contradiction::{ROUNDING, of_terms};
-pub use self::folder::Store;
+pub use self::folder::{Store, wait_for_store};
 pub use self::reading::{Rows, Selection};
 pub use self::row::{Failure, Row, RowPrior, SharedInfluence, Status, TermSummary, sha256};
 pub(crate) use self::row::{days_since_1970, packed};

@@ -64,5 +64,6 @@ pub use stamp::{StampKind, Stamps};
 pub use text::{DecimalSign, Index, Reread, StampColumn, TextEncoding, TextForm, unit_beside_name, unit_of_word};
 pub use write::{
     ClaimedFolder, Decimals, Outputs, TableFormat, TableWriter, TypedWriter, abandon_files, claim_folder,
-    create_folder, csv_field, is_ending_of_table, parquet_bytes, refuse_inputs, write_stream, write_table, write_whole,
+    create_folder, csv_field, holder_of_lock, is_ending_of_table, parquet_bytes, refuse_inputs, write_stream,
+    write_table, write_together, write_whole,
 };

@@ -5,10 +5,11 @@ use std::path::{Path, PathBuf};
 use centrical_report::{refuse_outputs, states_text};
 use centrical_session::{
     Error, Method, OnProgress, PlateauName, Session, Store, add_result, calibrate, claim_folder, refuse_date,
+    wait_for_store,
 };
 
 use super::report::Documents;
-use crate::output::{Outcome, Printing, remark};
+use crate::output::{Outcome, Printing, remark, say, say_waiting};
 use crate::progress;
 
 /// Calibrate a unit from a session folder: plateau means, fit, result.json.
@@ -75,13 +76,23 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let job = |progress: OnProgress| calibrate(&session, &arguments.hold_out, method, progress);
     let result = progress::reading(&session, arguments.printing, job)?;
     let result = arguments.documents.in_axes(result, &arguments.session)?;
-    if let Some(file) = &file {
-        result.write(file)?;
-    }
-    if let Some(store) = &arguments.store {
-        add_result(store, &result, false)?;
-    }
-    let outcome = arguments.documents.hand_over(&result, arguments.printing, out, file.as_deref());
+    // With a folder the result is written there beside its documents.
+    let written = file.as_deref().filter(|_| out.is_none()).map_or(Ok(()), |file| result.write(file));
+    let file = file.as_deref().filter(|_| written.is_ok());
+    let outcome = arguments.documents.hand_over(&result, arguments.printing, out, file);
+    let outcome = written.and(outcome);
     drop(claim);
-    outcome
+    let Some(store) = arguments.store.as_deref() else { return outcome };
+    let kept = wait_for_store(store, &say_waiting).and_then(|()| add_result(store, &result, false));
+    match (kept, outcome) {
+        (Ok(_), outcome) => outcome,
+        (Err(not_kept), Ok(_)) => {
+            say(&format!("{}: the result is not in this store; all other files are written\n", store.display()));
+            Err(not_kept)
+        }
+        (Err(not_kept), failed) => {
+            say(&format!("centrical: {not_kept}\n"));
+            failed
+        }
+    }
 }

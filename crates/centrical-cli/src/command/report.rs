@@ -83,7 +83,8 @@ impl Documents {
         }
     }
 
-    /// Writes the documents to the folder `out`, shows the result, which is `written` to a file or folder, and says whether it is acceptable.
+    /// Writes the result and its documents to the folder `out`, shows the result, which is `written` to a file or folder, and says whether it is
+    /// acceptable.
     pub fn hand_over(
         &self,
         result: &CalibrationResult,
@@ -91,23 +92,26 @@ impl Documents {
         out: Option<&Path>,
         written: Option<&Path>,
     ) -> Result<Outcome, Error> {
-        let issuer = self.laboratory.as_deref().map(|file| read_issuer(file, result)).transpose()?;
-        remark_other_days(issuer.as_ref().and_then(|issuer| issuer.other_days(result)).as_deref());
-        if let Some(folder) = out {
-            if issuer.is_none() {
+        let issuer = self.laboratory.as_deref().map(|file| read_issuer(file, result)).transpose();
+        let known = issuer.as_ref().ok().and_then(Option::as_ref);
+        remark_other_days(known.and_then(|issuer| issuer.other_days(result)).as_deref());
+        let documents = out.map_or(Ok(()), |folder| {
+            if known.is_none() {
                 remark_old_certificates(folder);
             }
-            write_all_documents(result, issuer.as_ref(), self.language.into(), folder)?;
-        }
+            write_all_documents(result, known, self.language.into(), folder)
+        });
+        let issuer = issuer?;
         let objections = result.objections();
         let unit = issuer.and_then(|issuer| issuer.unit);
-        let said = written.map(|written| format!("Written to {}", written.display()));
+        let said = written.filter(|_| documents.is_ok()).map(|written| format!("Written to {}", written.display()));
         let text = || result_text(result, unit.as_ref(), said.as_deref());
         printing.show(text, || result.to_json())?;
         // The result does not hold what the laboratory's limits say of the unit.
         if let Some(unit) = unit.as_ref().filter(|_| printing.json) {
             remark(&unit_text(unit));
         }
+        documents?;
         Ok(Outcome::acceptable(objections.is_empty() && is_within_limits(unit.as_ref())))
     }
 }

@@ -5,10 +5,12 @@ use std::path::PathBuf;
 use std::sync::atomic::Ordering;
 
 use centrical_report::Screen;
-use centrical_session::{Error, FailedSession, Method, SeriesRequest, SeriesSummary, calibrate_series, matching_paths};
+use centrical_session::{
+    Error, FailedSession, Method, SeriesRequest, SeriesSummary, calibrate_series, matching_paths, wait_for_store,
+};
 
 use crate::interruption::asked_to_end;
-use crate::output::{Outcome, Printing, print, remark};
+use crate::output::{Outcome, Printing, print, remark, say_waiting};
 use crate::progress;
 
 /// Calibrate many sessions, one on each core, into a store and a table.
@@ -65,6 +67,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
         reduced: arguments.reduced,
     };
     let sessions = matching_paths(&arguments.sessions)?;
+    wait_for_store(&arguments.out, &say_waiting)?;
     let template = "calibrating {bar:30} {pos}/{len} sessions, {eta} left";
     let asked = asked_to_end();
     let summary = progress::counting(template, Some(sessions.len()), arguments.printing.quiet, |progress| {

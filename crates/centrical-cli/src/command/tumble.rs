@@ -103,7 +103,6 @@ fn of_session(arguments: &Arguments, path: &Path) -> Result<Outcome, Error> {
     arguments.refuse_outputs(session.files().into_iter(), [&session.unit_model, &session.unit_serial])?;
     let result = calibrate(&session, &[], Method::Exact, &unwatched)?;
     let result = arguments.documents.in_axes(result, path)?;
-    out.map_or(Ok(()), |folder| result.write(&folder.join(RESULT)))?;
     arguments.documents.hand_over(&result, arguments.printing, out, out)
 }
 

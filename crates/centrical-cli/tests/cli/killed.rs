@@ -5,9 +5,10 @@
 
 use std::collections::BTreeMap;
 use std::fs;
+use std::io::{BufRead, BufReader};
 use std::os::unix::process::ExitStatusExt;
 use std::path::Path;
-use std::process::{Command, Output};
+use std::process::{Command, Output, Stdio};
 
 use tempfile::TempDir;
 
@@ -144,6 +145,69 @@ fn every_file_of_every_command() {
         &["report", &result, "--c", "out"],
     ] {
         dies_in_its_writes(arguments);
+    }
+}
+
+/// Outputs that belong together appear together: a kill within the write of the last leaves none of them.
+#[test]
+fn outputs_that_belong_together() {
+    let session = example();
+    let [record, session] = [session.join("records/m01.csv"), session].map(|path| path.to_str().unwrap().to_owned());
+    let result = TempDir::new().unwrap();
+    whole(result.path(), &["calibrate", &session, "--out", "."]);
+    let result = result.path().join("result.json").to_str().unwrap().to_owned();
+    for arguments in [
+        &["calibrate", &session, "--out", "out"][..],
+        &["noise", &record, "--out", "out"],
+        &["report", &result, "--c", "out", "--html", "out/report.html"],
+    ] {
+        let folder = TempDir::new().unwrap();
+        whole(folder.path(), arguments);
+        let largest = files(&folder.path().join("out")).values().map(Vec::len).max().unwrap();
+        let folder = TempDir::new().unwrap();
+        assert_eq!(run(folder.path(), "", (largest - 1) / BLOCK, arguments).status.signal(), Some(SIGXFSZ));
+        let left = files(&folder.path().join("out"));
+        assert!(!left.is_empty() && left.keys().all(|name| name.ends_with(".tmp")), "{arguments:?}: {:?}", left.keys());
+    }
+}
+
+/// A store that does not take the result takes nothing else with it, and the message says what is written.
+#[test]
+fn a_store_that_fails() {
+    let copy = Copy::new();
+    fs::create_dir(copy.out().join("store")).unwrap();
+    fs::write(copy.out().join("store/results"), "").unwrap();
+    let run = copy.calibrate(&["--out", "out", "--store", "store", "-q"]);
+    let message = String::from_utf8(run.stderr).unwrap();
+    assert_eq!(run.status.code(), Some(2), "{message}");
+    assert!(message.contains("store: the result is not in this store; all other files are written"), "{message}");
+    assert!(message.contains("store/results: cannot be written"), "{message}");
+    let written = files(&copy.out().join("out"));
+    assert!(["result.json", "report.html"].iter().all(|name| written.contains_key(*name)), "{:?}", written.keys());
+    assert!(written.keys().any(|name| name.starts_with("plots/")), "{:?}", written.keys());
+}
+
+/// Who waits for a store says so, and for whom.
+#[test]
+fn a_store_that_is_locked() {
+    let copy = Copy::new();
+    whole(&copy.out(), &["calibrate", copy.session().to_str().unwrap(), "--out", ".", "--store", "store"]);
+    let lock = fs::File::options().append(true).open(copy.out().join("store/lock")).unwrap();
+    for arguments in [
+        &["calibrate", copy.session().to_str().unwrap(), "--out", ".", "--store", "store", "-q"][..],
+        &["history", "add", "store", "result.json"],
+        &["series", copy.session().to_str().unwrap(), "--out", "store"],
+    ] {
+        lock.lock().unwrap();
+        let mut waiting = program::centrical();
+        waiting.args(arguments).current_dir(copy.out()).stdout(Stdio::null()).stderr(Stdio::piped());
+        let mut waiting = waiting.spawn().unwrap();
+        let said = BufReader::new(waiting.stderr.take().unwrap()).lines().next().unwrap().unwrap();
+        let holder = format!(" (process {})", std::process::id());
+        let holder = if cfg!(target_os = "linux") { holder.as_str() } else { "" };
+        assert_eq!(said, format!("waiting for the store store: another process writes into it{holder}"));
+        lock.unlock().unwrap();
+        assert!(waiting.wait().unwrap().success(), "{arguments:?}");
     }
 }
 

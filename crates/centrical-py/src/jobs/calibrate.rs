@@ -41,13 +41,11 @@ pub fn calibrate(
             )?;
         }
         let result = session::calibrate(&session, &hold_out, method, &|bytes| work.advance(bytes))?;
+        let issuer = laboratory.as_deref().map(|file| read_issuer(file, &result)).transpose();
         if let Some(folder) = &out {
-            result.write(&folder.join("result.json"))?;
+            write_all_documents(&result, issuer.as_ref().ok().and_then(Option::as_ref), language, folder)?;
         }
-        let issuer = laboratory.as_deref().map(|file| read_issuer(file, &result)).transpose()?;
-        if let Some(folder) = &out {
-            write_all_documents(&result, issuer.as_ref(), language, folder)?;
-        }
+        let issuer = issuer?;
         drop(claim);
         Ok((result, issuer.and_then(|issuer| issuer.unit)))
     })?;

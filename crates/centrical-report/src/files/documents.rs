@@ -7,7 +7,7 @@ use centrical::MeasurementModel;
 use centrical_session::{
     Axes, CalibrationResult, Date, DocumentKind, Error, HistoryEntry, HistoryEstimate, Laboratory, Limitable,
     NoiseAnalysis, Place, UnknownUnit, claim_folder, create_folder, history_up_to, read_history, refuse_inputs,
-    result_beside, write_whole,
+    result_beside, write_together, write_whole,
 };
 
 use crate::codegen::source_of_result;
@@ -110,28 +110,27 @@ pub fn write_documents(request: &DocumentRequest) -> Result<Documents, Error> {
             printed(&with_attachment(document, dcc.as_deref()), issuer, &request.result)
         })
         .transpose()?;
+    let mut sources = Vec::new();
+    if let Some(folder) = &request.code {
+        let of_result = source_of_result(&result, &request.result, request.range)?.into_iter();
+        sources.extend(of_result.map(|source| (folder.join(source.name), source.text.into_bytes())));
+    }
     let history =
         request.history.as_deref().map(|file| lines_of_history(file, &result)).transpose()?.unwrap_or_default();
+    let mut files = Vec::new();
     if let Some(file) = &request.html {
         let group_of = |name: &str| result.parameter(name).map(|parameter| parameter.group);
         let mut drawn = figures(&result, language);
         drawn.extend(history_figure(&history, &group_of, language));
-        write_whole(file, html(&report(&result, unit, past.as_ref(), drawn, language)).as_bytes())?;
+        let report = html(&report(&result, unit, past.as_ref(), drawn, language));
+        files.push((file.clone(), report.into_bytes()));
     }
-    if let Some((file, certificate)) = request.pdf.as_ref().zip(certificate) {
-        write_whole(file, &certificate)?;
-    }
-    if let Some((file, dcc)) = request.dcc.as_ref().zip(dcc) {
-        write_whole(file, dcc.as_bytes())?;
-    }
-    if let Some(folder) = &request.code {
-        let sources = source_of_result(&result, &request.result, request.range)?;
-        let _claim = claim_folder(folder)?;
-        refuse_inputs(&sources.iter().map(|source| folder.join(source.name)).collect::<Vec<_>>(), &inputs)?;
-        for source in sources {
-            write_whole(&folder.join(source.name), source.text.as_bytes())?;
-        }
-    }
+    files.extend(request.pdf.clone().zip(certificate));
+    files.extend(request.dcc.clone().zip(dcc.map(String::into_bytes)));
+    let _claim = request.code.as_deref().map(claim_folder).transpose()?;
+    refuse_inputs(&sources.iter().map(|(file, _)| file.clone()).collect::<Vec<_>>(), &inputs)?;
+    files.extend(sources);
+    write_together(&files)?;
     let other_days = issuer.as_ref().and_then(|issuer| issuer.other_days(&result));
     Ok(Documents { unit: issuer.and_then(|issuer| issuer.unit), other_days, result })
 }
@@ -153,6 +152,7 @@ pub fn refuse_outputs(
     result.map_or(Ok(()), |file| CalibrationResult::refuse_another_unit(file, model, serial))
 }
 
+const RESULT: &str = "result.json";
 const REPORT: &str = "report.html";
 const CERTIFICATE: &str = "certificate.pdf";
 const DIGITAL_CERTIFICATE: &str = "certificate.xml";
@@ -162,7 +162,8 @@ pub fn certificates_in(folder: &Path) -> impl Iterator<Item = PathBuf> {
     [CERTIFICATE, DIGITAL_CERTIFICATE].map(|name| folder.join(name)).into_iter().filter(|file| file.is_file())
 }
 
-/// Writes the report and its plots to a folder, and the certificates if the data of the laboratory are given.
+/// Writes the result to a folder with the report and its plots, and the certificates if the data of the laboratory are given. What cannot be
+/// written does not take the others with it.
 ///
 /// # Errors
 /// [`Error`] when the laboratory's file is wrong or the folder does not take the documents.
@@ -174,25 +175,39 @@ pub fn write_all_documents(
 ) -> Result<(), Error> {
     let unit = issuer.and_then(|issuer| issuer.unit.as_ref());
     let drawn = figures(result, language);
-    write_whole(&folder.join(REPORT), html(&report(result, unit, None, drawn.clone(), language)).as_bytes())?;
+    let report = html(&report(result, unit, None, drawn.clone(), language));
+    let mut files =
+        vec![(folder.join(RESULT), result.to_json()?.into_bytes()), (folder.join(REPORT), report.into_bytes())];
     let plots = folder.join("plots");
-    create_folder(&plots)?;
+    let made = create_folder(&plots);
     for figure in drawn {
         let is_one = figure.drawings.len() == 1;
-        for (n, drawing) in (1..).zip(&figure.drawings) {
+        for (n, drawing) in (1..).zip(figure.drawings) {
             let name = if is_one { format!("{}.svg", figure.name) } else { format!("{}-{n:02}.svg", figure.name) };
-            write_whole(&plots.join(name), drawing.as_bytes())?;
+            files.push((plots.join(name), drawing.into_bytes()));
         }
     }
-    if let Some(issuer) = issuer {
-        let file = folder.join("result.json");
-        let dcc = dcc(result, issuer, language, &file)?;
-        write_whole(&folder.join(DIGITAL_CERTIFICATE), dcc.as_bytes())?;
-        // Last, since it is refused where other documents are not.
-        let certificate = with_attachment(certificate(result, None, issuer, language), Some(&dcc));
-        write_whole(&folder.join(CERTIFICATE), &printed(&certificate, issuer, &file)?)?;
-    }
-    Ok(())
+    let certificates = issuer.map(|issuer| certificates(result, issuer, language, folder)).transpose();
+    let (certificates, refused) = certificates.map_or_else(|error| (None, Err(error)), |files| (files, Ok(())));
+    files.extend(certificates.into_iter().flatten());
+    let written = write_together(&files);
+    made?;
+    written?;
+    refused
+}
+
+/// The certificates of a result for a folder, which may be refused where other documents are not.
+fn certificates(
+    result: &CalibrationResult,
+    issuer: &Issuer,
+    language: Language,
+    folder: &Path,
+) -> Result<[(PathBuf, Vec<u8>); 2], Error> {
+    let file = folder.join(RESULT);
+    let dcc = dcc(result, issuer, language, &file)?;
+    let certificate = with_attachment(certificate(result, None, issuer, language), Some(&dcc));
+    let certificate = printed(&certificate, issuer, &file)?;
+    Ok([(folder.join(DIGITAL_CERTIFICATE), dcc.into_bytes()), (folder.join(CERTIFICATE), certificate)])
 }
 
 /// Writes the analysis of noise and its plots to a folder.
@@ -201,11 +216,10 @@ pub fn write_all_documents(
 /// [`Error::Io`] when the folder does not take them.
 pub fn write_noise(analysis: &NoiseAnalysis, folder: &Path) -> Result<(), Error> {
     let _claim = claim_folder(folder)?;
-    analysis.write(&folder.join("noise.json"))?;
-    for (name, plot) in noise_plots(analysis) {
-        write_whole(&folder.join(name), plot.to_svg().as_bytes())?;
-    }
-    Ok(())
+    let plots = noise_plots(analysis).into_iter();
+    let plots = plots.map(|(name, plot)| (folder.join(name), plot.to_svg().into_bytes()));
+    let analysis = (folder.join("noise.json"), analysis.to_json().into_bytes());
+    Ok(write_together(&[analysis].into_iter().chain(plots).collect::<Vec<_>>())?)
 }
 
 /// A history that somebody names: with a line at least, which one that is just begun need not have.
@@ -255,10 +269,8 @@ pub fn write_plots(folder: &Path, plots: &[(impl Display, Plot)], inputs: &[Path
     let files: Vec<PathBuf> = plots.iter().map(|(name, _)| folder.join(format!("{name}.svg"))).collect();
     refuse_inputs(&files, inputs)?;
     let _claim = claim_folder(folder)?;
-    for (file, (_, plot)) in files.iter().zip(plots) {
-        write_whole(file, plot.to_svg().as_bytes())?;
-    }
-    Ok(())
+    let files = files.into_iter().zip(plots).map(|(file, (_, plot))| (file, plot.to_svg().into_bytes()));
+    Ok(write_together(&files.collect::<Vec<_>>())?)
 }
 
 /// Who issues the documents of `result`, from the laboratory's file, with what its decision says of the unit.

@@ -1,14 +1,13 @@
 //! A noise analysis as JSON, schema `centrical-noise/1`.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use centrical::reduction::Staircase;
 use centrical::stability::{Analysis, Coefficient, Deviation, Estimator, NoiseTerm, NoiseTerms, Spectrum};
-use centrical_table::{escaped, write_whole};
+use centrical_table::escaped;
 use serde_json::{Value, json};
 
 use super::result::Program;
-use crate::error::Error;
 
 /// Name of the schema's present version.
 pub(crate) const NOISE_SCHEMA: &str = "centrical-noise/1";
@@ -43,14 +42,6 @@ impl NoiseAnalysis {
     /// The file's name without its folders.
     pub fn file_name(&self) -> String {
         self.file.file_name().unwrap_or(self.file.as_os_str()).to_string_lossy().into_owned()
-    }
-
-    /// Writes the analysis as JSON; the file appears whole or not at all.
-    ///
-    /// # Errors
-    /// [`Error::Table`] when the folder does not take it.
-    pub fn write(&self, file: &Path) -> Result<(), Error> {
-        Ok(write_whole(file, self.to_json().as_bytes())?)
     }
 
     /// The analysis as JSON: values in the readings' unit (m/s^2) and seconds; the same input gives the same bytes.

@@ -181,21 +181,20 @@ pub fn tumble(request: &TumbleRequest, folder: &Path, progress: OnProgress) -> R
 }
 
 impl Tumble {
-    /// Writes the rests as a session into `folder`, which is there, and the result beside.
+    /// Writes the rests as a session into `folder`, which is there. The result is written with its documents.
     ///
     /// # Errors
     /// If the folder holds a session with records or of another unit, or does not take the files, or one of them was read.
     pub fn write(&self, request: &TumbleRequest, folder: &Path) -> Result<(), Error> {
         refuse_another_session(folder, &self.session)?;
-        let names = [TABLE, ATTITUDES, EXPERIMENT_FILE, "result.json"];
-        let outputs @ [table, attitudes, experiment, result] = &names.map(|name| folder.join(name));
+        let names = [TABLE, ATTITUDES, EXPERIMENT_FILE];
+        let outputs @ [table, attitudes, experiment] = &names.map(|name| folder.join(name));
         refuse_other_inputs(folder, outputs, &request.inputs().collect::<Vec<_>>())?;
         write_plateaus(table, &rest_rows(&self.reduced.plateaus))?;
         for known in self.session.rest_tables.iter().filter_map(|table| table.attitudes.as_ref()) {
             write_attitudes(attitudes, &known.up_b)?;
         }
-        write_whole(experiment, self.text.as_bytes())?;
-        self.result.write(result)
+        Ok(write_whole(experiment, self.text.as_bytes())?)
     }
 }
 

@@ -1,9 +1,11 @@
 //! The folder of a store: where its files are, and the lock of its writers.
 
-use std::fs::{self, File};
+use std::fs::{self, File, TryLockError};
 use std::path::{Path, PathBuf};
+use std::thread;
+use std::time::{Duration, Instant};
 
-use centrical_table::{create_folder, refuse_inputs};
+use centrical_table::{create_folder, holder_of_lock, refuse_inputs};
 
 use crate::error::{Error, Place};
 use crate::experiment::EXPERIMENT_FILE;
@@ -127,12 +129,37 @@ impl Store {
 
     /// Waits until no other process writes into the store.
     pub(super) fn lock(&self) -> Result<Lock, Error> {
-        let path = self.lock_file();
-        let failed = |error| Error::writing(&path, error);
-        let file = File::options().create(true).append(true).open(&path).map_err(failed)?;
-        file.lock().map_err(failed)?;
+        let file = self.open_lock()?;
+        file.lock().map_err(|error| Error::writing(&self.lock_file(), error))?;
         Ok(Lock { _file: file })
     }
+
+    fn open_lock(&self) -> Result<File, Error> {
+        let path = self.lock_file();
+        File::options().create(true).append(true).open(&path).map_err(|error| Error::writing(&path, error))
+    }
+}
+
+/// Waits until no other process writes into the store in `folder`, which need not be there. `say` takes the note of who is waited for, once that
+/// has lasted for two seconds.
+///
+/// # Errors
+/// [`Error`] if the folder does not take the lock.
+pub fn wait_for_store(folder: &Path, say: &dyn Fn(&str)) -> Result<(), Error> {
+    const LONG: Duration = Duration::from_secs(2);
+    const AGAIN: Duration = Duration::from_millis(50);
+    let Ok(store) = Store::open(folder) else { return Ok(()) };
+    let (file, begun) = (store.open_lock()?, Instant::now());
+    let mut is_said = false;
+    while let Err(TryLockError::WouldBlock) = file.try_lock() {
+        if !is_said && begun.elapsed() >= LONG {
+            let holder = holder_of_lock(&file);
+            say(&format!("waiting for the store {}: another process writes into it{holder}", folder.display()));
+            is_said = true;
+        }
+        thread::sleep(AGAIN);
+    }
+    Ok(())
 }
 
 /// The files of a folder, in any order.

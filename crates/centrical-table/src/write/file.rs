@@ -97,10 +97,33 @@ impl Begun {
 /// # Errors
 /// [`Error::Io`] if the folder does not take the file; nothing is left behind then.
 pub fn write_whole(file: &Path, bytes: &[u8]) -> Result<(), Error> {
-    write_beside(file, |mut output| {
+    write_beside(file, whole(bytes))
+}
+
+/// Writes all of `bytes`, and sees them to the disk.
+fn whole(bytes: &[u8]) -> impl FnOnce(File) -> io::Result<()> {
+    |mut output| {
         output.write_all(bytes)?;
         output.sync_data()
-    })
+    }
+}
+
+/// Writes files that belong together as [`write_whole`] does, all of them beside before the first takes its place: a program that is killed leaves
+/// the old files or the new ones, but for the moment of the renames. A file that cannot be written does not take the others with it.
+///
+/// # Errors
+/// [`Error::Io`] of the first that cannot be written, with the names of the others and what is written.
+pub fn write_together(files: &[(PathBuf, Vec<u8>)]) -> Result<(), Error> {
+    let begun: Vec<io::Result<Beside>> = files.iter().map(|(file, bytes)| written_beside(file, whole(bytes))).collect();
+    let ends = begun.into_iter().map(|begun| begun.and_then(Beside::take_place));
+    let mut failed: Vec<_> = files.iter().zip(ends).filter_map(|((file, _), end)| Some((file, end.err()?))).collect();
+    if failed.is_empty() {
+        return Ok(());
+    }
+    let names: Vec<_> = failed.iter().filter_map(|(file, _)| file.file_name()?.to_str()).collect();
+    let of_all = format!("{} of {} files not written ({})", failed.len(), files.len(), names.join(", "));
+    let (file, source) = failed.swap_remove(0);
+    Err(Error::writing(file, io::Error::new(source.kind(), format!("{source}; {of_all}"))))
 }
 
 /// As [`write_whole`], for what is too large to be made before it is written, or is written again and again. Nobody waits for
@@ -118,11 +141,15 @@ pub fn write_stream(file: &Path, write: impl FnOnce(&mut (dyn Write + Send)) -> 
 }
 
 fn write_beside(file: &Path, write: impl FnOnce(File) -> io::Result<()>) -> Result<(), Error> {
-    let written = Beside::create(file).and_then(|(beside, output)| {
-        write(output)?;
-        beside.take_place()
-    });
+    let written = written_beside(file, write).and_then(Beside::take_place);
     written.map_err(|error| Error::writing(file, error))
+}
+
+/// The temporary file beside `file`, written.
+fn written_beside(file: &Path, write: impl FnOnce(File) -> io::Result<()>) -> io::Result<Beside> {
+    let (beside, output) = Beside::create(file)?;
+    write(output)?;
+    Ok(beside)
 }
 
 /// Removes all files in the making, and lets none be begun or finished from now on: for a program that is interrupted.
@@ -180,6 +207,20 @@ mod tests {
 
     fn mode(file: &Path) -> u32 {
         fs::metadata(file).unwrap().permissions().mode() & 0o777
+    }
+
+    #[test]
+    fn one_of_several_files_that_fails_leaves_the_others() {
+        let folder = tempfile::tempdir().unwrap();
+        let names = ["a.json", "missing/b.html", "c.svg", "missing/d.svg"];
+        let files = names.map(|name| (folder.path().join(name), name.as_bytes().to_vec()));
+        let message = write_together(&files).unwrap_err().to_string();
+        assert!(message.contains("missing/b.html: cannot be written: "), "{message}");
+        assert!(message.ends_with("; 2 of 4 files not written (b.html, d.svg)"), "{message}");
+        let read = |n: usize| fs::read(&files[n].0).ok();
+        assert_eq!([read(0), read(2)], [0, 2].map(|n: usize| Some(names[n].as_bytes().to_vec())));
+        assert!(read(1).is_none() && fs::read_dir(folder.path()).unwrap().count() == 2, "nothing else is left");
+        assert!(begun().files.iter().all(|file| !file.starts_with(folder.path())));
     }
 
     #[test]

@@ -23,7 +23,7 @@ pub fn claim_folder(folder: &Path) -> Result<ClaimedFolder, Error> {
     match open.try_lock() {
         Ok(()) => Ok(ClaimedFolder { _folder: Some(open) }),
         Err(TryLockError::WouldBlock) => {
-            let found = format!("another process at work there{}", holder(&open));
+            let found = format!("another process at work there{}", holder_of_lock(&open));
             Err(Error::content(folder, Place::Whole, found, "a folder that nobody else fills now"))
         }
         Err(TryLockError::Error(_)) => Ok(ClaimedFolder { _folder: None }),
@@ -38,12 +38,12 @@ pub fn create_folder(folder: &Path) -> Result<(), Error> {
     fs::create_dir_all(folder).map_err(|error| Error::writing(folder, error))
 }
 
-/// The number of the process that holds the lock, as the system lists it: `1: FLOCK ADVISORY WRITE 4711 08:01:1234 0 EOF`.
+/// The process that holds the lock of a file or folder, ` (process 4711)`, as the system lists it: `1: FLOCK ADVISORY WRITE 4711 08:01:1234 0 EOF`.
 #[cfg(target_os = "linux")]
-fn holder(folder: &File) -> String {
+pub fn holder_of_lock(locked: &File) -> String {
     use std::os::unix::fs::MetadataExt;
     let process = || {
-        let end = format!(":{}", folder.metadata().ok()?.ino());
+        let end = format!(":{}", locked.metadata().ok()?.ino());
         let locks = fs::read_to_string("/proc/locks").ok()?;
         let held = locks.lines().map(|line| line.split_whitespace().collect::<Vec<_>>());
         let process = |words: Vec<&str>| words.get(5)?.ends_with(&end).then(|| words[4].to_owned());
@@ -52,8 +52,8 @@ fn holder(folder: &File) -> String {
     process().map_or(String::new(), |process| format!(" (process {process})"))
 }
 
-/// Other systems do not list locks.
+/// Nothing: other systems do not list locks.
 #[cfg(not(target_os = "linux"))]
-fn holder(_: &File) -> String {
+pub fn holder_of_lock(_: &File) -> String {
     String::new()
 }

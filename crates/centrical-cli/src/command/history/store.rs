@@ -5,10 +5,11 @@ use std::path::PathBuf;
 use centrical_report::{PagesRequest, history_list_text, write_history_pages};
 use centrical_session::{
     AddedReport, Error, Place, Selection, add_results, check_store, list_store, matching_paths, unwatched,
+    wait_for_store,
 };
 
 use crate::given::largest_error;
-use crate::output::{Outcome, Printing, print};
+use crate::output::{Outcome, Printing, print, say_waiting};
 use crate::progress;
 
 /// Add results to a store, which is created if absent. Results that are in it already stay as they are.
@@ -34,6 +35,7 @@ pub struct Add {
 /// Runs the command.
 pub fn add(arguments: &Add) -> Result<Outcome, Error> {
     let results = matching_paths(&arguments.results)?;
+    wait_for_store(&arguments.store, &say_waiting)?;
     let added = progress::counting("reading {pos} results, {elapsed}", None, arguments.quiet, |progress| {
         add_results(&arguments.store, &results, arguments.rows_only, progress)
     })?;
