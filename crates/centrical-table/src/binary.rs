@@ -6,6 +6,7 @@ mod catch_panic;
 mod cells;
 mod checksums;
 mod columnar;
+mod dates;
 #[cfg(feature = "hdf5")]
 mod hdf5;
 mod mat;
@@ -85,18 +86,19 @@ impl BinaryFormat {
 
     /// Reads `fields` of a source of this format, which can hold `most` rows.
     pub fn open(self, source: &Source, fields: Vec<Field>, most: u64) -> Result<ColumnReader, Error> {
-        if let Some(field) = fields.iter().find(|field| field.name.date_and_column().0.is_some()) {
+        let dated = fields.iter().find(|field| field.name.date_and_column().0.is_some());
+        if let Some(field) = dated.filter(|_| !matches!(self, Self::Parquet | Self::Arrow)) {
             let place = Place::Column(field.name.to_string());
-            let expected = "one column of timestamps, or of seconds";
-            return Err(Error::content(source.name(), place, "a date and a time beside text alone", expected));
+            let found = "a date and a time, which text, Parquet and Arrow alone have in two columns";
+            return Err(Error::content(source.name(), place, found, "one column of timestamps, or of seconds"));
         }
         let columns = match self {
             Self::Parquet => {
-                let parts = parquet::parts(source, &fields)?;
+                let parts = dates::joined(&fields, |fields| parquet::parts(source, fields))?;
                 return Ok(ColumnReader::new(source.name(), fields, parts, most));
             }
             Self::Arrow => {
-                let parts = arrow::parts(source, &fields)?;
+                let parts = dates::joined(&fields, |fields| arrow::parts(source, fields))?;
                 return Ok(ColumnReader::new(source.name(), fields, parts, most));
             }
             Self::Npy => npy::columns(source, &fields)?,

@@ -12,7 +12,7 @@ pub enum ColumnName {
     Name(String),
     /// By its number from 1, for files without a header.
     Number(usize),
-    /// Two columns of a text that make one stamp: of the date, and of the time of the day.
+    /// Two columns of a text, of Parquet or of Arrow that make one stamp: of the date, and of the time of the day.
     DateAndTime(Box<[Self; 2]>),
     /// It is not in the file: the number of the row, from 0.
     Row,
@@ -42,6 +42,10 @@ pub enum Rule {
     },
     /// A value may be missing ([`is_missing`]), and is NaN then.
     OrMissing,
+    /// Dates, as Parquet and Arrow count them.
+    Date,
+    /// Times of the day, as they count them.
+    TimeOfDay,
 }
 
 /// How programs write a value that they lack, in small letters.
@@ -56,6 +60,11 @@ pub fn is_missing(field: &str) -> bool {
 impl Rule {
     pub(crate) fn ascends(self) -> bool {
         matches!(self, Self::Ascending { .. })
+    }
+
+    /// Whether plain numbers are asked for, or may be.
+    pub(crate) fn takes_numbers(self) -> bool {
+        !matches!(self, Self::Date | Self::TimeOfDay)
     }
 }
 

@@ -231,12 +231,12 @@ pub(super) fn column(source: &Source, of: (&Array, &ArrayColumn), field: &Field)
     })))
 }
 
-/// A reader of one column of stamps, which are integers of 64 bits.
+/// A reader of one column of stamps, dates or times of the day, which are integers: how they are counted, and ticks that one stands for.
 pub(super) fn stamps(
     source: &Source,
     of: (&Array, &ArrayColumn),
     field: &Field,
-    form: TickForm,
+    (form, each): (TickForm, i64),
 ) -> Result<Column, Error> {
     let (scalar, unit) = (of.1.scalar, form.unit.seconds());
     let mut next = next_bytes(source, of, field)?;
@@ -245,7 +245,7 @@ pub(super) fn stamps(
         Box::new(move |values, ticks| {
             let begin = ticks.len();
             next(&mut |stride, bytes| {
-                ticks.extend(bytes.chunks(stride).map(|row| scalar.integer(&row[..scalar.size])));
+                ticks.extend(bytes.chunks(stride).map(|row| scalar.integer(&row[..scalar.size]).saturating_mul(each)));
             })?;
             values.extend(ticks[begin..].iter().map(|ticks| *ticks as f64 * unit));
             Ok(())
@@ -354,21 +354,21 @@ impl Scalar {
         low
     }
 
-    /// The integer of 64 bits in the first bytes.
+    /// The integer with a sign in the first bytes, as many as its size.
     fn integer(self, bytes: &[u8]) -> i64 {
-        i64::from_le_bytes(self.low_bytes(bytes))
+        let unused = 64 - 8 * self.size;
+        // Up and down again fills the upper bytes with the sign.
+        i64::from_le_bytes(self.low_bytes(bytes)) << unused >> unused
     }
 
     /// The number in the first bytes, as many as its size.
     pub fn read(self, bytes: &[u8]) -> f64 {
         let low = self.low_bytes(bytes);
         let bits = u64::from_le_bytes(low);
-        let unused = 64 - 8 * self.size;
         match self.kind {
             ScalarKind::Float if self.size == 8 => f64::from_bits(bits),
             ScalarKind::Float => f64::from(f32::from_le_bytes([low[0], low[1], low[2], low[3]])),
-            // Up and down again fills the upper bytes with the sign.
-            ScalarKind::Signed => ((bits << unused).cast_signed() >> unused) as f64,
+            ScalarKind::Signed => self.integer(bytes) as f64,
             ScalarKind::Unsigned => bits as f64,
         }
     }

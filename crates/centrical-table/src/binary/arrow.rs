@@ -118,7 +118,9 @@ fn batch_columns(
         .map_err(|e| e.unwrap_or_else(|| contradiction(source.name())))?;
     let numbers = |((array, column), field): ((&Array, &ArrowColumn), &Field)| {
         let of = (array, &array.columns[0]);
-        column.stamps.map_or_else(|| arrays::column(source, of, field), |form| arrays::stamps(source, of, field, form))
+        column
+            .stamps
+            .map_or_else(|| arrays::column(source, of, field), |counted| arrays::stamps(source, of, field, counted))
     };
     arrays.iter().zip(columns).zip(fields).map(numbers).collect()
 }

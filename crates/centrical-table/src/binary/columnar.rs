@@ -45,7 +45,7 @@ pub(super) fn place_of(file: &Path, names: &[String], field: &Field) -> Result<u
 
 impl Column {
     /// Appends the next values, and what stamps are counted as.
-    fn read(&mut self, values: &mut Vec<f64>, ticks: &mut Vec<i64>) -> Result<(), Error> {
+    pub fn read(&mut self, values: &mut Vec<f64>, ticks: &mut Vec<i64>) -> Result<(), Error> {
         match self {
             Self::Numbers(next) => next(values),
             Self::Stamps(_, next) => next(values, ticks),

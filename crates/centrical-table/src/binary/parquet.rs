@@ -15,6 +15,7 @@ use parquet::schema::types::ColumnDescPtr;
 use super::arrow;
 use super::catch_panic::catch_panic;
 use super::columnar::{Column, MISSING, Parts, place_of};
+use super::dates::SECONDS_OF_DAY;
 use super::parquet_pages::{Checked, Pages};
 use crate::column::{Field, ROWS, Rule};
 use crate::error::{Error, Place};
@@ -91,15 +92,13 @@ fn find(file: &Path, metadata: &ParquetMetaData, durations: &[String], field: &F
 /// What a column is if it is not numbers, one a row, or stamps where these are allowed.
 fn describe(column: &ColumnDescPtr, durations: &[String], rule: Rule) -> Option<String> {
     let numbers = matches!(column.physical_type(), Type::DOUBLE | Type::FLOAT | Type::INT32 | Type::INT64);
-    let stamps = rule == (Rule::Ascending { stamps: true });
     match column.logical_type_ref() {
         _ if column.max_rep_level() > 0 => Some("lists".to_owned()),
         // To Parquet it is a number; its unit stands in the schema of Arrow alone.
         _ if durations.contains(&column.path().string()) => Some("a duration".to_owned()),
-        Some(LogicalType::Timestamp(_)) if stamps => None,
-        None if stamp_of_old(column).is_some() && stamps => None,
+        _ if counted(column).is_some_and(|counted| counted.rule == rule) => None,
         None if !is_plain_of_old(column) => Some(format!("{:?}", column.converted_type())),
-        None | Some(LogicalType::Integer(_)) if numbers => None,
+        None | Some(LogicalType::Integer(_)) if numbers && rule.takes_numbers() => None,
         Some(LogicalType::Float16) => Some("numbers of 16 bits (float16)".to_owned()),
         Some(logical) => Some(type_name(logical)),
         None => Some(format!("{:?}", column.physical_type())),
@@ -118,13 +117,35 @@ fn is_plain_of_old(column: &ColumnDescPtr) -> bool {
     signed || is_unsigned(column)
 }
 
-/// How the stamps of a column without a logical type are counted: always in UTC.
-fn stamp_of_old(column: &ColumnDescPtr) -> Option<TickForm> {
-    match column.converted_type() {
-        ConvertedType::TIMESTAMP_MILLIS => Some(TickForm { unit: TickUnit::Millisecond, is_utc: true }),
-        ConvertedType::TIMESTAMP_MICROS => Some(TickForm { unit: TickUnit::Microsecond, is_utc: true }),
-        _ => None,
-    }
+/// How a column counts stamps, dates or times of the day.
+struct Counted {
+    /// By which of them it can be asked for.
+    rule: Rule,
+    form: TickForm,
+    /// Ticks of the form that one of the column stands for.
+    ticks: i64,
+}
+
+/// How a column counts time; nothing of numbers. Without a logical type stamps are always in UTC.
+fn counted(column: &ColumnDescPtr) -> Option<Counted> {
+    const STAMPS: Rule = Rule::Ascending { stamps: true };
+    let unit_of = |unit: &TimeUnit| match unit {
+        TimeUnit::MILLIS => TickUnit::Millisecond,
+        TimeUnit::MICROS => TickUnit::Microsecond,
+        TimeUnit::NANOS => TickUnit::Nanosecond,
+    };
+    let (rule, unit, is_utc) = match (column.logical_type_ref(), column.converted_type()) {
+        (Some(LogicalType::Timestamp(stamp)), _) => (STAMPS, unit_of(&stamp.unit), stamp.is_adjusted_to_u_t_c),
+        (Some(LogicalType::Time(time)), _) => (Rule::TimeOfDay, unit_of(&time.unit), time.is_adjusted_to_u_t_c),
+        (Some(LogicalType::Date), _) | (None, ConvertedType::DATE) => (Rule::Date, TickUnit::Second, false),
+        (None, ConvertedType::TIMESTAMP_MILLIS) => (STAMPS, TickUnit::Millisecond, true),
+        (None, ConvertedType::TIMESTAMP_MICROS) => (STAMPS, TickUnit::Microsecond, true),
+        (None, ConvertedType::TIME_MILLIS) => (Rule::TimeOfDay, TickUnit::Millisecond, true),
+        (None, ConvertedType::TIME_MICROS) => (Rule::TimeOfDay, TickUnit::Microsecond, true),
+        _ => return None,
+    };
+    let ticks = if rule == Rule::Date { SECONDS_OF_DAY } else { 1 };
+    Some(Counted { rule, form: TickForm { unit, is_utc }, ticks })
 }
 
 /// Whether the integers of a column have no sign.
@@ -145,21 +166,6 @@ fn durations(metadata: &ParquetMetaData) -> Vec<String> {
     catch_panic(|| Ok::<_, ParquetError>(arrow::durations(&bytes))).unwrap_or_default()
 }
 
-/// How the stamps of a column are counted; nothing of numbers.
-fn stamp_form(column: &ColumnDescPtr) -> Option<TickForm> {
-    match column.logical_type_ref() {
-        Some(LogicalType::Timestamp(stamp)) => {
-            let unit = match stamp.unit {
-                TimeUnit::MILLIS => TickUnit::Millisecond,
-                TimeUnit::MICROS => TickUnit::Microsecond,
-                TimeUnit::NANOS => TickUnit::Nanosecond,
-            };
-            Some(TickForm { unit, is_utc: stamp.is_adjusted_to_u_t_c })
-        }
-        _ => stamp_of_old(column),
-    }
-}
-
 /// One column of one row group.
 fn column(
     file: &Path,
@@ -170,21 +176,23 @@ fn column(
 ) -> ParquetResult<Column> {
     let pages = Checked::new(pages, metadata.row_group(group), column)?;
     let description = metadata.file_metadata().schema_descr().column(column);
-    let (stamps, is_unsigned) = (stamp_form(&description), is_unsigned(&description));
+    let (counted, is_unsigned) = (counted(&description), is_unsigned(&description));
     let whole = description.max_def_level();
     let mut reader = get_column_reader(description, Box::new(pages));
     let file = file.to_owned();
-    if let Some(form) = stamps {
+    if let Some(Counted { form, ticks: each, .. }) = counted {
         let unit = form.unit.seconds();
         return Ok(Column::Stamps(
             form,
             Box::new(move |values, ticks| {
+                let mut count = |v: i64| {
+                    ticks.push(v.saturating_mul(each));
+                    ticks.last().map_or(0.0, |ticks| *ticks as f64 * unit)
+                };
                 let read = catch_panic(|| match &mut reader {
-                    ColumnReader::Int64ColumnReader(reader) => numbers(reader, values, |v| {
-                        ticks.push(v);
-                        v as f64 * unit
-                    }),
-                    _ => Err(ParquetError::General("stamps of other than 64 bits".to_owned())),
+                    ColumnReader::Int64ColumnReader(reader) => numbers(reader, values, count),
+                    ColumnReader::Int32ColumnReader(reader) => numbers(reader, values, |v| count(v.into())),
+                    _ => Err(ParquetError::General("a count of time that is no integer".to_owned())),
                 });
                 read.map_err(|e| damaged(&file, e.as_ref()))
             }),

@@ -20,6 +20,7 @@ import openpyxl
 import pandas as pd
 import polars as pl
 import pyarrow as pa
+import pyarrow.compute as pc
 import pyarrow.feather as feather
 import pyarrow.parquet as pq
 import scipy.io
@@ -203,6 +204,18 @@ def write_stamps(t, f):
     pq.write_table(table, HERE / "stamps_of_units.parquet", version="2.6")
     lines = [",".join(texts)] + [",".join(row) for row in zip(*texts.values())]
     (HERE / "stamps_of_units.txt").write_text("\n".join(lines) + "\n")
+    write_dates(t, f)
+
+
+def write_dates(t, f):
+    """Dates and times of the day in two columns, in every type that Arrow has for them; midnight comes after half a second."""
+    stamps = pa.array(np.datetime64("2026-10-06", "ns") + np.round(t * 1e9).astype("timedelta64[ns]"))
+    days, times = stamps.cast(pa.date32()), stamps.cast(pa.time64("ns"))
+    columns = {"Date": days, "Date64": days.cast(pa.date64()), "Time": times, "Time us": pc.cast(times, pa.time64("us"), safe=False)}
+    columns |= {name: pc.cast(times, pa.time32(unit), safe=False) for name, unit in [("Time ms", "ms"), ("Time s", "s")]}
+    table = pa.table({**columns, **{f"f{i + 1}": f[:, i] for i in range(3)}})
+    feather.write_feather(table, HERE / "dates.feather")
+    pq.write_table(table, HERE / "dates.parquet", version="2.6")
 
 
 def write_stream(name, table):

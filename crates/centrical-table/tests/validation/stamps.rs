@@ -215,13 +215,67 @@ fn dates_beside_times_of_the_day() {
         assert_eq!(dated(text, column).unwrap_err(), expected);
     }
     let error = TableReader::open(
-        &data("stamps.parquet"),
+        &data("stamps.tdms"),
         Extent::Whole,
         &[Field { name: of_names(), expected: "a time".to_owned(), rule: Rule::Ascending { stamps: true } }],
         "a record",
     );
     let message = error.err().unwrap().to_string();
     let expected =
-        "Date and Time: found a date and a time beside text alone, expected one column of timestamps, or of seconds";
+        "Date and Time: found a date and a time, which text, Parquet and Arrow alone have in two columns, expected one column of \
+         timestamps, or of seconds";
     assert!(message.ends_with(expected), "{message}");
+}
+
+/// The seconds of a date and a time of the day of a binary table, and their stamps as text.
+fn of_two_columns(file: &str, [date, time]: [&str; 2]) -> Result<(Vec<f64>, Vec<String>), String> {
+    let name = ColumnName::DateAndTime(Box::new([date, time].map(|name| ColumnName::Name(name.to_owned()))));
+    let field = |name, rule| Field { name, expected: "a number".to_owned(), rule };
+    let reading = field(ColumnName::Name("f1".to_owned()), Rule::Any);
+    let fields = [field(name, Rule::Ascending { stamps: true }), reading];
+    let message = |error: centrical_table::Error| error.to_string().split_once(", ").unwrap().1.to_owned();
+    let mut reader = TableReader::open(&data(file), Extent::Whole, &fields, "a record").map_err(message)?;
+    reader.keep_stamps();
+    let (mut times, mut texts) = (Vec::new(), Vec::new());
+    while reader.next_batch().map_err(message)?.is_some() {
+        for (stamps, rows) in reader.take_stamps().iter().zip(reader.batch()) {
+            assert_eq!(rows.len(), 2);
+            texts.extend((0..rows[0].len()).map(|row| String::from_utf8(stamps.text(row).unwrap().into()).unwrap()));
+            times.extend_from_slice(&rows[0]);
+        }
+    }
+    Ok((times, texts))
+}
+
+/// Dates and times of the day as pyarrow writes them, in every type that it has; the texts are those of the record, by `record.csv`.
+#[test]
+fn dates_beside_times_of_the_day_in_parquet_and_arrow() {
+    // 2026-10-06T00:00:00Z, by `date`.
+    const MIDNIGHT: f64 = 1_791_244_800.0;
+    let t: Vec<f64> =
+        lines(&data("record.csv")).iter().map(|line| line.split(',').next().unwrap().parse().unwrap()).collect();
+    for (file, date) in [("dates.parquet", "Date"), ("dates.feather", "Date"), ("dates.feather", "Date64")] {
+        for (time, resolution) in [("Time", 1e9), ("Time us", 1e6), ("Time ms", 1e3), ("Time s", 1.0)] {
+            if file.ends_with("parquet") && time == "Time s" {
+                // To Parquet pyarrow writes milliseconds of it.
+                continue;
+            }
+            let (times, texts) = of_two_columns(file, [date, time]).unwrap();
+            let expected: Vec<f64> = t.iter().map(|t| MIDNIGHT + (t * resolution).floor() / resolution).collect();
+            assert_eq!(times, expected, "{file}, {date}, {time}");
+            let last = ["2026-10-05T23:59:59.500000000", "2026-10-05T23:59:59.000000000"];
+            assert_eq!(texts[0], last[usize::from(time == "Time s")], "{file}, {date}, {time}");
+        }
+    }
+    for (columns, expected) in [
+        (["Date", "f1"], "f1: found DOUBLE, expected times of the day"),
+        (["f1", "Time"], "f1: found DOUBLE, expected dates"),
+        (["Time", "Date"], "Time: found Time, expected dates"),
+        (["Day", "Time"], "Day: found columns "),
+    ] {
+        let message = of_two_columns("dates.parquet", columns).unwrap_err();
+        assert!(message.starts_with(expected), "{message}");
+    }
+    let message = of_two_columns("dates.feather", ["Date", "f1"]).unwrap_err();
+    assert_eq!(message, "f1: found a column without numbers, expected times of the day");
 }

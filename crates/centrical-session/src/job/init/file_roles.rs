@@ -239,6 +239,15 @@ fn of_binary(path: PathBuf, columns: &[ColumnName]) -> FileColumns {
             file.unread_time = Some(name.clone());
         }
     }
+    let of_rule = |rule| columns.iter().find(|column| opens(&file.path, &[(column, rule)]));
+    if file.time.is_none()
+        && let Some((dates, times)) = of_rule(Rule::Date).zip(of_rule(Rule::TimeOfDay))
+    {
+        let [dates, times] = [dates, times].map(|column| Label::usual(&column.to_string()));
+        let both = times.on_dates(dates);
+        // Formats without dates take both for numbers.
+        file.time = opens(&file.path, &[(&both.column, STAMPS)]).then_some(both);
+    }
     // The time of a waveform is that of a reading, and asked for by any name.
     let waveform = Label::usual("t");
     if let (None, Some(reading)) = (&file.time, file.readings.first())

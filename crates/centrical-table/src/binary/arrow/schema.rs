@@ -4,11 +4,12 @@ use std::path::Path;
 
 use polars_arrow_format::ipc::planus::ReadAsRoot;
 use polars_arrow_format::ipc::{
-    Endianness, FieldRef, MessageHeaderRef, MessageRef, Precision, SchemaRef, TimeUnit, TypeRef,
+    DateUnit, Endianness, FieldRef, MessageHeaderRef, MessageRef, Precision, SchemaRef, TimeUnit, TypeRef,
 };
 
 use super::super::arrays::{Array, ArrayColumn, Bytes, Scalar, ScalarKind};
 use super::super::columnar::place_of;
+use super::super::dates::SECONDS_OF_DAY;
 use super::messages::{CONTINUATION, damaged};
 use crate::column::{Field, Rule};
 use crate::error::{Error, Place};
@@ -21,8 +22,8 @@ pub(super) struct ArrowColumn {
     pub node: usize,
     pub buffer: usize,
     scalar: Scalar,
-    /// How they are counted if they are stamps.
-    pub stamps: Option<TickForm>,
+    /// How they are counted if they are stamps, dates or times of the day, and ticks that one stands for.
+    pub stamps: Option<(TickForm, i64)>,
 }
 
 /// Deepest nesting of types, and most of them in all: a damaged schema may contain itself.
@@ -91,32 +92,46 @@ impl ArrowColumn {
 type Flat<T> = Result<T, polars_arrow_format::ipc::planus::Error>;
 
 /// The numbers of a column, and how they are counted if they are stamps; or what it is if it is neither numbers nor, where allowed, stamps.
-fn numbers(column: &FieldRef, rule: Rule, big_endian: bool) -> Flat<Result<(Scalar, Option<TickForm>), String>> {
+fn numbers(column: &FieldRef, rule: Rule, big_endian: bool) -> Flat<Result<(Scalar, Option<(TickForm, i64)>), String>> {
     let described = || Ok(Err("a column without numbers".to_owned()));
     let (Some(kind), None) = (column.type_()?, column.dictionary()?) else { return described() };
     let (kind, bits, stamps) = match kind {
-        TypeRef::Int(int) if int.is_signed()? => (ScalarKind::Signed, int.bit_width()?, None),
-        TypeRef::Int(int) => (ScalarKind::Unsigned, int.bit_width()?, None),
-        TypeRef::FloatingPoint(float) => match float.precision()? {
+        TypeRef::Int(int) if rule.takes_numbers() && int.is_signed()? => (ScalarKind::Signed, int.bit_width()?, None),
+        TypeRef::Int(int) if rule.takes_numbers() => (ScalarKind::Unsigned, int.bit_width()?, None),
+        TypeRef::FloatingPoint(float) if rule.takes_numbers() => match float.precision()? {
             Precision::Half => (ScalarKind::Float, 16, None),
             Precision::Single => (ScalarKind::Float, 32, None),
             Precision::Double => (ScalarKind::Float, 64, None),
         },
         TypeRef::Timestamp(stamp) if rule == (Rule::Ascending { stamps: true }) => {
-            let unit = match stamp.unit()? {
-                TimeUnit::Second => TickUnit::Second,
-                TimeUnit::Millisecond => TickUnit::Millisecond,
-                TimeUnit::Microsecond => TickUnit::Microsecond,
-                TimeUnit::Nanosecond => TickUnit::Nanosecond,
-            };
             let is_utc = stamp.timezone()?.is_some_and(|zone| !zone.is_empty());
-            (ScalarKind::Signed, 64, Some(TickForm { unit, is_utc }))
+            (ScalarKind::Signed, 64, Some((TickForm { unit: tick_unit(stamp.unit()?), is_utc }, 1)))
+        }
+        TypeRef::Time(time) if rule == Rule::TimeOfDay => {
+            let form = TickForm { unit: tick_unit(time.unit()?), is_utc: false };
+            (ScalarKind::Signed, time.bit_width()?, Some((form, 1)))
+        }
+        TypeRef::Date(date) if rule == Rule::Date => {
+            let (bits, unit, ticks) = match date.unit()? {
+                DateUnit::Day => (32, TickUnit::Second, SECONDS_OF_DAY),
+                DateUnit::Millisecond => (64, TickUnit::Millisecond, 1),
+            };
+            (ScalarKind::Signed, bits, Some((TickForm { unit, is_utc: false }, ticks)))
         }
         TypeRef::Duration(_) => return Ok(Err("a duration".to_owned())),
         _ => return described(),
     };
     let scalar = usize::try_from(bits / 8).ok().and_then(|size| Scalar::new(kind, size, big_endian));
     Ok(scalar.map(|scalar| (scalar, stamps)).ok_or_else(|| format!("numbers of {bits} bits")))
+}
+
+fn tick_unit(unit: TimeUnit) -> TickUnit {
+    match unit {
+        TimeUnit::Second => TickUnit::Second,
+        TimeUnit::Millisecond => TickUnit::Millisecond,
+        TimeUnit::Microsecond => TickUnit::Microsecond,
+        TimeUnit::Nanosecond => TickUnit::Nanosecond,
+    }
 }
 
 /// Names of the columns that are durations, of a schema as Parquet files keep it: a message of a stream.
