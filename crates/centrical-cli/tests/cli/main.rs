@@ -4,6 +4,8 @@ mod axes;
 mod calibrate;
 mod comparisons;
 mod compensate;
+#[cfg(target_os = "linux")]
+mod few_threads;
 mod history;
 mod history_mistakes;
 mod init;

@@ -221,8 +221,7 @@ fn dates_beside_times_of_the_day() {
         "a record",
     );
     let message = error.err().unwrap().to_string();
-    let expected =
-        "Date and Time: found a date and a time, which text, Parquet and Arrow alone have in two columns, expected one column of \
+    let expected = "Date and Time: found a date and a time, which text, Parquet and Arrow alone have in two columns, expected one column of \
          timestamps, or of seconds";
     assert!(message.ends_with(expected), "{message}");
 }

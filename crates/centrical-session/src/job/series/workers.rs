@@ -7,7 +7,7 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
 use std::time::{Duration, Instant};
 use std::{mem, thread};
 
-use centrical::{OnProgress, Stopped, unwatched};
+use centrical::{OnProgress, Stopped, advance, unwatched};
 use rayon::ThreadPoolBuilder;
 
 use super::ledger::Ledger;
@@ -35,13 +35,18 @@ impl Workers<'_> {
     /// Calibrates the sessions and writes their rows as they come.
     pub fn run(&self, sessions: &[&Path], ledger: &mut Ledger) -> Result<(), Error> {
         let cores = thread::available_parallelism().map_or(1, usize::from);
-        let jobs = self.request.jobs.unwrap_or(cores).clamp(1, sessions.len().max(1));
+        // A pool of fewer threads than cores was asked for, or is all that the system gives.
+        let usual = cores.min(rayon::current_num_threads());
+        let jobs = self.request.jobs.unwrap_or(usual).clamp(1, sessions.len().max(1));
         let (next, stop) = (AtomicUsize::new(0), AtomicBool::new(false));
         let (send, received) = sync_channel(2 * jobs);
         thread::scope(|scope| {
-            for _ in 0..jobs {
+            let is_given = |_: &usize| {
                 let (send, next, stop) = (send.clone(), &next, &stop);
-                scope.spawn(move || self.work(sessions, next, stop, &send));
+                thread::Builder::new().spawn_scoped(scope, move || self.work(sessions, next, stop, &send)).is_ok()
+            };
+            if (0..jobs).take_while(is_given).count() == 0 {
+                return self.one_by_one(sessions, ledger);
             }
             drop(send);
             let written = self.write(sessions, &received, ledger, &stop);
@@ -50,6 +55,16 @@ impl Workers<'_> {
             while received.recv().is_ok() {}
             written
         })
+    }
+
+    /// Without a thread for it: session after session, each on all threads that there are.
+    fn one_by_one(&self, sessions: &[&Path], ledger: &mut Ledger) -> Result<(), Error> {
+        for session in sessions {
+            let done = calibrated(session, self.request, &self.writing, &|_| (self.progress)(0)).ok_or(Stopped)?;
+            self.flush(&[session], vec![(0, done)], ledger)?;
+            advance(self.progress, 1)?;
+        }
+        Ok(())
     }
 
     /// One thread: session after session, to the last.
