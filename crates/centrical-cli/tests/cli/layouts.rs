@@ -121,6 +121,19 @@ fn a_date_beside_a_time_of_the_day() {
     assert_eq!(parameters(&copy), parameters(&stamped));
 }
 
+/// The same in Parquet and Arrow, where both are types.
+#[test]
+fn a_date_beside_a_time_of_the_day_in_binary_formats() {
+    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("../centrical-table/tests/data");
+    for name in ["dates.parquet", "dates.feather"] {
+        let copy = Copy::new();
+        let record = data.join(name).display().to_string();
+        let run = copy.run(&["init", &record]);
+        let drafted = String::from_utf8(run.stdout).unwrap();
+        assert_lines(&drafted, &["time = { date = \"Date\", column = \"Time\" }  # FOUND"]);
+    }
+}
+
 #[test]
 fn a_date_is_that_of_a_time() {
     for (own, entry, expected) in [

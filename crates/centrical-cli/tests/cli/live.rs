@@ -5,7 +5,7 @@ use std::io::{Read, Write};
 use std::net::TcpListener;
 use std::path::Path;
 use std::process::Command;
-use std::time::{Duration, Instant};
+use std::time::{Duration, Instant, SystemTime};
 
 use serde_json::Value;
 
@@ -66,7 +66,15 @@ fn the_state_is_that_of_the_history_over_a_kill() {
     let copy = empty();
     let mut served = Served::start(&mut watch(&copy, &["--target", "bias=0.05"]));
     assert_eq!((state(&served)["arrived"].as_u64(), state(&served)["rank"].as_u64()), (Some(0), Some(0)));
-    assert!(served.get("/").1.contains("No plateau has arrived yet."));
+    let page = served.get("/").1;
+    assert!(page.contains("No plateau has arrived yet."));
+    // Without scripts it is loaded again, and says of when it is.
+    assert!(page.contains("<noscript><meta http-equiv=\"refresh\" content=\"10\"></noscript></head>"), "{page}");
+    let (_, time) = page.split_once("<noscript><p id=\"state\">As of ").unwrap();
+    let (time, _) = time.split_once(" UTC. ").unwrap();
+    let time = time.split(':').fold(0, |sum, part| 60 * sum + part.parse::<u64>().unwrap());
+    let now = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).unwrap().as_secs() % 86_400;
+    assert!((86_400 + now - time) % 86_400 < 60, "{time} {now}");
     for number in 1..=3 {
         bring(&copy, number);
     }

@@ -63,6 +63,25 @@ fn a_copied_record_is_refused() {
     assert!(message.contains("m02.csv: found the readings of mounting 1, "), "{message}");
 }
 
+/// A gap that is longer than the time called quiet ends a watch, which says why the record counts as finished.
+#[test]
+fn a_record_that_pauses_for_too_long() {
+    let copy = Copy::new();
+    let records = copy.session().join("records");
+    let first = fs::read_to_string(records.join("m01.csv")).unwrap();
+    fs::remove_dir_all(&records).unwrap();
+    fs::create_dir(&records).unwrap();
+    let begun: Vec<&str> = first.lines().take(first.lines().count() / 3).collect();
+    fs::write(records.join("m01.csv"), begun.join("\n") + "\n").unwrap();
+    let session = copy.session();
+    let run = copy.run(&["watch", session.to_str().unwrap(), "--quiet", "0.5", "--interval", "0.05"]);
+    let message = String::from_utf8(run.stderr).unwrap();
+    assert_eq!(run.status.code(), Some(2), "{message}");
+    let why = "m01.csv counts as finished, since it has not changed for 0.5 s; --quiet SECONDS waits for longer gaps\n";
+    let (_, then) = message.split_once(why).unwrap_or_else(|| panic!("{message}"));
+    assert!(then.starts_with("centrical: ") && then.contains("m01.csv, mounting 1: "), "{message}");
+}
+
 /// The result of another unit is not written over, and neither is a file that is no result.
 #[test]
 fn a_result_of_another_unit_stays() {

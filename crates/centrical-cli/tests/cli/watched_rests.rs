@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Stdio};
 use std::thread;
-use std::time::{Duration, Instant};
+use std::time::{Duration, Instant, SystemTime};
 
 use serde_json::Value;
 use tempfile::TempDir;
@@ -169,4 +169,21 @@ fn rests_that_have_not_come_and_rests_that_have_gone() {
     let said = String::from_utf8(run.stderr).unwrap();
     assert_eq!(run.status.code(), Some(2), "{said}");
     assert!(said.contains("watch.json") && said.contains("a session of 120 plateaus or more"), "{said}");
+}
+
+/// Rests dated to the future, as by a file server whose clock is ahead, are waited for by a watch that goes on as by one that begins.
+#[test]
+fn rests_dated_to_the_future_are_waited_for() {
+    let laboratory = Laboratory::new();
+    laboratory.run(&["watch", "session", "--once", "--quiet", "0", "--out", "watched"]);
+    fs::remove_file(laboratory.path("watched/result.json")).unwrap();
+    let record = fs::File::options().append(true).open(laboratory.record()).unwrap();
+    record.set_modified(SystemTime::now() + Duration::from_secs(3600)).unwrap();
+    let text = laboratory.run(&["watch", "session", "--once", "--out", "watched"]);
+    assert!(text.contains("waiting for session/records/tumble-1.csv\nStopped after 120 plateaus"), "{text}");
+    let mut watch = start(&laboratory, "watched");
+    until("the calibration", || watch.try_wait().unwrap().is_some());
+    assert_eq!(watch.wait().unwrap().code(), Some(0));
+    assert_eq!(history(&laboratory.path("watched")).len(), 120);
+    laboratory.assert_calibrated("watched");
 }

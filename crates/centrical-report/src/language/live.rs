@@ -13,6 +13,8 @@ pub(crate) struct LiveMessages {
     pub silent: &'static str,
     /// Before the name of a file.
     pub waiting_for: &'static str,
+    /// Of which time a page without scripts is.
+    pub as_of: fn(&str) -> String,
     pub no_connection: &'static str,
     pub frozen: &'static str,
     pub schedule: &'static str,
@@ -101,6 +103,7 @@ pub(super) const IN_ENGLISH: LiveMessages = LiveMessages {
     failed: "The watch ended at an error",
     silent: "The watch does not write any more; it was probably killed",
     waiting_for: "waiting for",
+    as_of: |time| format!("As of {time}. Without JavaScript the page is loaded again every few seconds."),
     no_connection: "No connection to the watch",
     frozen: "The record has stopped growing: look at the recorder",
     schedule: "Schedule",
@@ -185,6 +188,9 @@ pub(super) const IN_RUSSIAN: LiveMessages = LiveMessages {
     failed: "Отслеживание завершилось ошибкой",
     silent: "Отслеживание больше ничего не пишет; вероятно, оно было прервано",
     waiting_for: "ожидается файл",
+    as_of: |time| {
+        format!("По состоянию на {time}. Без JavaScript страница загружается заново каждые несколько секунд.")
+    },
     no_connection: "Нет связи с программой",
     frozen: "Запись перестала расти: проверьте регистратор",
     schedule: "Программа эксперимента",

@@ -23,17 +23,23 @@ pub const LIVE_SCRIPT: &str = include_str!("html/live.js");
 /// Plateaus whose speeds stand in the table.
 const LAST_SPEEDS: usize = 8;
 
+/// What loads the script; without scripts the page is loaded again, seldom enough for a reader who has to find the place again.
+const SCRIPT: &str = "<script src=\"/live.js\" defer></script>\
+                      <noscript><meta http-equiv=\"refresh\" content=\"10\"></noscript>";
+
 /// The page around the panel of `live`, as it is at the time `now` [s since 1970].
 pub fn live_page(live: &LiveReport, history: &[HistoryEntry], now: f64, language: Language) -> String {
     let words = language.live();
     let unit = [live.unit_model.as_str(), live.unit_serial.as_str()].join(" ");
     let body = format!(
         "<header><p class=\"kind\">{}</p><h1>{}</h1><p>{}</p><nav class=\"languages\">{}</nav></header>\n\
+         <noscript><p id=\"state\">{}</p></noscript>\n\
          <p id=\"connection\" class=\"alarm\" role=\"alert\" hidden>{}</p>\n<div id=\"live\">\n{}</div>\n",
         words.live,
         Escaped(&live.title),
         Escaped(unit.trim()),
         languages(language),
+        (words.as_of)(&format!("{}:{:02} UTC", clock(live.written), live.written.rem_euclid(60.0).floor())),
         words.no_connection,
         live_panel(live, history, now, language)
     );
@@ -42,7 +48,7 @@ pub fn live_page(live: &LiveReport, history: &[HistoryEntry], now: f64, language
 
 /// A page of a server: its style and script are files of their own.
 pub(super) fn served(title: &str, body: &str, is_live: bool, language: Language) -> String {
-    let script = if is_live { "<script src=\"/live.js\" defer></script>" } else { "" };
+    let script = if is_live { SCRIPT } else { "" };
     let style = format!("<link rel=\"stylesheet\" href=\"/live.css\">{script}");
     let head = head(language.code(), title, &style);
     format!("{head}<body><main class=\"wall\">\n{body}</main></body></html>\n")
@@ -164,7 +170,7 @@ impl Panel<'_> {
         fact(out, self.messages.mounting_word, &format!("{} {} {}", live.mounting, self.messages.of, live.mountings))?;
         let ends = match live.ends {
             _ if live.next.is_none() && arrived > 0 => None,
-            Some(ends) => Some(format!("<time data-seconds=\"{ends:.0}\">{}</time>", clock(ends))),
+            Some(ends) => Some(format!("<time data-seconds=\"{ends:.0}\">{} UTC</time>", clock(ends))),
             None => Some(words.ends_unknown.to_owned()),
         };
         if let Some(ends) = ends {
@@ -381,8 +387,8 @@ fn fact(out: &mut String, name: &str, value: &str) -> std::fmt::Result {
     write!(out, "<div><dt>{name}</dt><dd>{value}</dd></div>")
 }
 
-/// Hours and minutes of a time, UTC; the script writes those of the reader's clock.
+/// Hours and minutes of a time in UTC; the script writes those of the reader's clock.
 fn clock(seconds: f64) -> String {
     let minutes = (seconds / 60.0).floor();
-    format!("{:02}:{:02} UTC", (minutes / 60.0).rem_euclid(24.0).floor(), minutes.rem_euclid(60.0))
+    format!("{:02}:{:02}", (minutes / 60.0).rem_euclid(24.0).floor(), minutes.rem_euclid(60.0))
 }

@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 use super::history::{HistoryEntry, HistoryEstimate};
 use crate::document::json::{self, rows};
 use crate::error::{Error, Place};
-use crate::experiment::Session;
+use crate::experiment::{RestTable, Session};
 use crate::record::Input;
 use crate::settings::{from_json, read_result};
 
@@ -84,14 +84,15 @@ impl WatchState {
         Ok(Self { schema, experiment, point, reference: None, referenced: 0, plateaus })
     }
 
-    /// The state in `file`; without that file the one before the first plateau. `unknowns` are those of a fit: parameters and influences.
+    /// The state in `file`; without that file the one before the first plateau. `unknowns` are those of a fit: parameters and influences. Where
+    /// it has rests that the session still waits for, the number of plateaus that have come.
     ///
     /// # Errors
     /// [`Error`] when the file is of another form or belongs to another experiment file.
-    pub fn resume(session: &Session, unknowns: usize, file: &Path) -> Result<Self, Error> {
+    pub fn resume(session: &Session, unknowns: usize, file: &Path) -> Result<Result<Self, usize>, Error> {
         let fresh = Self::new(session)?;
         if !file.exists() {
-            return Ok(fresh);
+            return Ok(Ok(fresh));
         }
         let expected = "the state of a watched session";
         let text = read_result(file, expected)?;
@@ -103,6 +104,9 @@ impl WatchState {
         }
         let count = session.experiment.set_points.len();
         let largest = state.plateaus.iter().map(|plateau| plateau.set_point + 1).max().unwrap_or(0);
+        if largest > count && session.rest_tables.iter().any(RestTable::is_awaited) {
+            return Ok(Err(state.plateaus.len()));
+        }
         if largest > count {
             let expected =
                 format!("{count}, as many as the session has now with its rests, or no such file to begin anew");
@@ -128,7 +132,7 @@ impl WatchState {
                 return refuse(found, "numbers, and a symmetric positive definite covariance");
             }
         }
-        Ok(state)
+        Ok(Ok(state))
     }
 
     /// Writes the state, whole or not at all; after a power cut it may be lost, and is made anew from the session's records.

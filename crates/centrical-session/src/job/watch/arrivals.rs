@@ -13,6 +13,7 @@ use centrical_table::Extent;
 
 use super::changed::{over, reads_otherwise};
 use super::growth::Growth;
+use super::note::Note;
 use super::quiet::{Quiet, Sight, until};
 use super::rests;
 use crate::error::Error;
@@ -47,15 +48,6 @@ pub struct Watch<'s> {
     /// The telemetry, or the pulses, that has not come or is not whole yet.
     awaited_speeds: Option<PathBuf>,
     note: Option<Note>,
-}
-
-/// Why a look at a folder brought nothing.
-#[derive(Debug, Clone, PartialEq, Eq)]
-enum Note {
-    /// A file has not come.
-    WaitingFor(PathBuf),
-    /// A record cannot be read yet, and why.
-    NotYet(String),
 }
 
 /// What a record looks like from outside.
@@ -117,18 +109,12 @@ impl<'s> Watch<'s> {
 
     /// What is waited for, if something is.
     pub fn note(&self) -> Option<String> {
-        Some(match self.note.as_ref()? {
-            Note::WaitingFor(file) => format!("waiting for {}", file.display()),
-            Note::NotYet(why) => format!("not yet: {why}"),
-        })
+        self.note.as_ref().map(Note::text)
     }
 
     /// The file that is waited for, if the note is of one.
     pub fn awaited(&self) -> Option<&Path> {
-        match self.note.as_ref()? {
-            Note::WaitingFor(file) => Some(file),
-            Note::NotYet(_) => None,
-        }
+        self.note.as_ref().and_then(Note::awaited)
     }
 
     /// What a look would find if a record that has just changed counted as finished, for who looks only once.
@@ -266,7 +252,10 @@ impl<'s> Watch<'s> {
             Err(error) if self.quiet.may_pass(&error) => {
                 (self.seen, self.note) = (None, Some(Note::NotYet(error.to_string())));
             }
-            Err(error) => return Err(error),
+            Err(error) => {
+                self.note = (!look.followed).then(|| Note::Silent { file: file.to_owned(), after: self.quiet.after });
+                return Err(error);
+            }
             Ok(None) => {}
             Ok(Some((reduced, complete))) => {
                 let scheduled = ScheduledPlateau::of_mounting(&self.session.experiment, mounting).len();

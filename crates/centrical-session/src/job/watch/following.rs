@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
-use std::{fs, io, thread};
+use std::{fs, io};
 
 use centrical::fit::{Follower, Progress};
 use centrical::plan::{Criterion, NextPlateau, PlanError};
@@ -14,7 +14,7 @@ use nalgebra::Vector3;
 use super::arrivals::Watch;
 use super::board::{Board, WatchProgress};
 use super::changed::Changed;
-use super::quiet::{Quiet, until};
+use super::quiet::{Quiet, until, wait};
 use super::request::{WatchEnd, WatchEvent, WatchRequest};
 use super::rests;
 use crate::document::{LiveStatus, WatchState, WatchedPlateau, append_history, keep_history, largest_force};
@@ -43,25 +43,27 @@ pub(super) struct Following<'a> {
 }
 
 impl<'a> Following<'a> {
-    /// Begins, or goes on from the state in the folder.
+    /// Begins, or goes on from `state`, the one in the folder.
     ///
     /// # Errors
-    /// [`Error`] when the request names an unknown group or plateau, or the folder holds the state of another session.
-    pub fn resume(request: &'a WatchRequest, session: &'a Session, model: &'a MeasurementModel) -> Result<Self, Error> {
+    /// [`Error`] when the request names an unknown group or plateau.
+    pub fn resume(
+        request: &'a WatchRequest,
+        session: &'a Session,
+        model: &'a MeasurementModel,
+        mut state: WatchState,
+    ) -> Result<Self, Error> {
         check_groups(&request.groups, session, model)?;
         // Rests that have not come yet can be held out too.
         let is_known =
             |name: &&PlateauName| name.mounting <= session.mountings.len() || rests::awaited(session).is_none();
         let held_out: Vec<usize> =
             request.hold_out.iter().filter(is_known).map(|name| name.set_point(session)).collect::<Result<_, _>>()?;
-        let state_file = request.out.join(STATE_FILE);
-        let unknowns = model.parameters().len() + model.influences().len();
-        let mut state = WatchState::resume(session, unknowns, &state_file)?;
         keep_history(&request.out.join(HISTORY_FILE), state.plateaus.len())?;
         // One that has been taken up before is held out from now on.
         state.plateaus.iter_mut().for_each(|plateau| plateau.held_out |= held_out.contains(&plateau.set_point));
         let follower = Follower::resume(model, state.taken(), &state.point, state.reference())
-            .map_err(|source| Error::fit(&state_file, source))?;
+            .map_err(|source| Error::fit(&request.out.join(STATE_FILE), source))?;
         let experiment = &session.experiment;
         let planning = |source| Error::planning(&session.file, source);
         let mut next = NextPlateau::new(model, &Criterion::Reading(largest_force(experiment))).map_err(planning)?;
@@ -140,7 +142,11 @@ impl<'a> Following<'a> {
         let (mut note, mut is_frozen) = (None, false);
         loop {
             self.session.folder.marks().refuse_replaced()?;
-            let arrivals = watch.look(stop)?;
+            let arrivals = watch.look(stop);
+            if let Some(now) = watch.note().filter(|now| arrivals.is_err() && note.as_ref() != Some(now)) {
+                report(WatchEvent::Waiting(&now));
+            }
+            let arrivals = arrivals?;
             let count = arrivals.len();
             for (k, observation) in arrivals.into_iter().enumerate() {
                 if stop.load(Ordering::Relaxed) {
@@ -380,21 +386,9 @@ fn check_groups(wanted: &[String], session: &Session, model: &MeasurementModel) 
 /// Longest time for which plateaus that have come are not in the state on disk.
 const KEPT_EACH: Duration = Duration::from_secs(1);
 
-const STATE_FILE: &str = "watch.json";
+pub(super) const STATE_FILE: &str = "watch.json";
 
 /// What is seen at this moment.
 const LIVE_FILE: &str = "watch-live.json";
 
 const HISTORY_FILE: &str = "watch-history.jsonl";
-
-/// Sleeps, but not on when `stop` is raised.
-fn wait(time: Duration, stop: &AtomicBool) {
-    /// How soon a stop is noticed.
-    const SLICE: Duration = Duration::from_millis(50);
-    let begun = Instant::now();
-    while !stop.load(Ordering::Relaxed)
-        && let Some(left) = time.checked_sub(begun.elapsed()).filter(|left| !left.is_zero())
-    {
-        thread::sleep(left.min(SLICE));
-    }
-}

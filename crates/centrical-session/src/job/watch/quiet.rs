@@ -6,6 +6,7 @@ use std::io::ErrorKind;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread;
 use std::time::{Duration, Instant, SystemTime};
 
 use centrical_table::Error as TableError;
@@ -119,6 +120,18 @@ pub(super) fn until(stop: &AtomicBool) -> ControlFlow<()> {
     if stop.load(Ordering::Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
 }
 
+/// Sleeps, but not on when `stop` is raised.
+pub(super) fn wait(time: Duration, stop: &AtomicBool) {
+    /// How soon a stop is noticed.
+    const SLICE: Duration = Duration::from_millis(50);
+    let begun = Instant::now();
+    while !stop.load(Ordering::Relaxed)
+        && let Some(left) = time.checked_sub(begun.elapsed()).filter(|left| !left.is_zero())
+    {
+        thread::sleep(left.min(SLICE));
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -161,7 +174,7 @@ mod tests {
         let future = SystemTime::now().checked_add(60 * MINUTE);
         let (mut quiet, file) = (Quiet::new(SOON, false), || vec![PathBuf::from("m01.csv")]);
         assert!(!quiet.see(file(), 9, future).left_alone);
-        std::thread::sleep(SOON);
+        thread::sleep(SOON);
         let sight = quiet.see(file(), 9, future);
         assert!(sight.left_alone && sight.stood >= SOON);
     }
