@@ -18,7 +18,6 @@ mod tumbled;
 use std::path::{Path, PathBuf};
 
 use centrical::OnProgress;
-use centrical_table::shown_path;
 
 pub use self::column_names::time_column;
 pub use self::draft::{Draft, InitRequest};
@@ -36,8 +35,7 @@ pub fn init(request: &InitRequest, progress: OnProgress) -> Result<Draft, Error>
     if groups.is_empty() {
         let inputs = request.inputs.first().map_or(Path::new("."), PathBuf::as_path);
         let table = "a table with a time and three readings, as text, Parquet, Arrow, NumPy, MATLAB or TDMS";
-        let first =
-            unused.first().map_or(String::new(), |file| format!(" ({}: {})", shown_path(&file.path), file.reason));
+        let first = unused.first().map_or(String::new(), |error| format!(" ({error})"));
         let expected = format!("{table}{first}");
         return Err(Error::content(inputs, Place::Whole, "no record", expected));
     }

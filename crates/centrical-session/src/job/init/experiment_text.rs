@@ -2,11 +2,11 @@
 
 use std::path::Path;
 
-use centrical_table::{ColumnName, DecimalSign, TextForm};
+use centrical_table::{ColumnName, DecimalSign, Error as TableError, TextForm};
 
 use super::column_names::Label;
 use super::draft::{Draft, InitRequest, UNKNOWN, relative};
-use super::file_roles::{FileColumns, Unused};
+use super::file_roles::FileColumns;
 use super::findings::{Attitude, Findings, Set};
 use super::output_unit::OutputUnit;
 use super::sighting::{NOMINAL_RATE, Raw, SeenMounting};
@@ -24,16 +24,14 @@ const SIX: &str = include_str!("six-positions.toml");
 pub(super) fn draft(
     mut mountings: Vec<SeenMounting>,
     tumbled: Option<&Tumbled>,
-    unused: &[Unused],
+    unused: &[TableError],
     request: &InitRequest,
 ) -> Result<Draft, Error> {
     let findings = Findings::of(&mut mountings, tumbled)?;
     let mountings = mountings.as_slice();
     let mut draft = Draft::default();
     heading(&mut draft, mountings);
-    for Unused { path, reason } in unused {
-        draft.unused(&format!("{}: {reason}", relative(path, request.folder())));
-    }
+    unused.iter().for_each(|error| draft.unused(&error.to_string()));
     draft.line("");
     session(&mut draft, tumbled);
     unit(&mut draft, &findings.unit, tumbled);

@@ -6,12 +6,12 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use centrical_table::{
-    ColumnName, Extent, Field, Rule, TableReader, TextForm, binary_columns, is_ending_of_table, text_form,
-    unit_beside_name,
+    ColumnName, Error as TableError, Extent, Field, Rule, TableReader, TextForm, binary_columns, is_ending_of_table,
+    text_form, unit_beside_name,
 };
 
 use super::column_names::{Label, SAMPLES, What, sort_by_axis, what};
-use crate::error::Error;
+use crate::error::{Error, Place};
 
 /// Folders are searched to this depth.
 const DEPTH: usize = 3;
@@ -42,15 +42,8 @@ pub(super) struct FileColumns {
     is_like_gyroscope: bool,
 }
 
-/// A file that is not used, and why.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Unused {
-    pub path: PathBuf,
-    pub reason: String,
-}
-
-/// The mountings that the files are of, in the natural order of their names, and the files that are not used.
-pub(super) fn groups(inputs: &[PathBuf]) -> Result<(Vec<Group>, Vec<Unused>), Error> {
+/// The mountings that the files are of, in the natural order of their names, and why other files are not used.
+pub(super) fn groups(inputs: &[PathBuf]) -> Result<(Vec<Group>, Vec<TableError>), Error> {
     let mut paths = Vec::new();
     for input in inputs {
         collect(input, DEPTH, true, &mut paths)?;
@@ -69,22 +62,18 @@ pub(super) fn groups(inputs: &[PathBuf]) -> Result<(Vec<Group>, Vec<Unused>), Er
     let records = if others.is_empty() {
         gyroscopes
     } else {
-        let reason = "found rates of turn by the names of its columns, expected readings or the speed of the arm";
-        unused.extend(gyroscopes.into_iter().map(|file| file.unused(reason)));
+        let found = "rates of turn by the names of its columns";
+        unused.extend(gyroscopes.iter().map(|file| file.unused(found, "readings or the speed of the arm")));
         others
     };
     let (joined, apart) = joined(records);
-    let reason = |file: &FileColumns| {
+    unused.extend(apart.iter().map(|file| {
         let names = file.form.as_ref().map_or(String::new(), |form| format!(" in columns {}", form.names.join(", ")));
-        format!("found one reading{names}, expected three, or two more files whose names differ in the axis")
-    };
-    unused.extend(apart.into_iter().map(|file| {
-        let reason = reason(&file);
-        file.unused(&reason)
+        file.unused(&format!("one reading{names}"), "three, or two more files whose names differ in the axis")
     }));
     let mut groups: Vec<Group> = joined.into_iter().map(|records| Group { records, telemetry: None }).collect();
-    let reason = "found a speed, expected a record of the same name or number";
-    unused.extend(pair(&mut groups, telemetry).into_iter().map(|file| file.unused(reason)));
+    let expected = "a record of the same name or number";
+    unused.extend(pair(&mut groups, telemetry).iter().map(|file| file.unused("a speed", expected)));
     Ok((groups, unused))
 }
 
@@ -135,8 +124,8 @@ impl FileColumns {
         self
     }
 
-    fn unused(self, reason: &str) -> Unused {
-        Unused { path: self.path, reason: reason.to_owned() }
+    fn unused(&self, found: &str, expected: &str) -> TableError {
+        TableError::content(&self.path, Place::Whole, found, expected)
     }
 }
 
@@ -164,7 +153,7 @@ fn collect(path: &Path, depth: usize, is_named: bool, paths: &mut Vec<PathBuf>) 
 }
 
 /// The columns of a file; or why it is neither a record nor telemetry.
-fn columns_of(path: PathBuf) -> Result<Result<FileColumns, Unused>, Error> {
+fn columns_of(path: PathBuf) -> Result<Result<FileColumns, TableError>, Error> {
     let (file, names) = match text_form(&path)? {
         Some(form) => {
             let names = match form.names.join(", ") {
@@ -178,20 +167,12 @@ fn columns_of(path: PathBuf) -> Result<Result<FileColumns, Unused>, Error> {
                 let names = columns.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
                 (of_binary(path, &columns), format!("columns {names}"))
             }
-            Err(error) => {
-                let reason = match error {
-                    centrical_table::Error::Content { found, expected, .. } => {
-                        format!("found {found}, expected {expected}")
-                    }
-                    other => other.to_string(),
-                };
-                return Ok(Err(Unused { path, reason }));
-            }
+            Err(error) => return Ok(Err(error)),
         },
     };
     let is_used = file.speed.is_some() || !file.readings.is_empty();
     let expected = "a time and three readings, or a time and a speed such as \"speed (rpm)\"";
-    Ok(if is_used { Ok(file) } else { Err(file.unused(&format!("found {names}, expected {expected}"))) })
+    Ok(if is_used { Ok(file) } else { Err(file.unused(&names, expected)) })
 }
 
 /// Columns of a text by their names and units; without a header by their number.
@@ -263,7 +244,7 @@ fn opens(path: &Path, columns: &[(&ColumnName, Rule)]) -> bool {
     open(path, columns).is_ok()
 }
 
-fn open(path: &Path, columns: &[(&ColumnName, Rule)]) -> Result<TableReader, centrical_table::Error> {
+fn open(path: &Path, columns: &[(&ColumnName, Rule)]) -> Result<TableReader, TableError> {
     let field = |(name, rule): &(&ColumnName, Rule)| Field {
         name: (*name).clone(),
         expected: "a number".to_owned(),
