@@ -36,6 +36,22 @@ fn columns(csv: &str) -> Vec<[f64; 4]> {
     csv.lines().skip(1).map(row).collect()
 }
 
+/// The products of undetermined combinations widen uncertainties beyond the budget: such a result is read by every command, also by the
+/// one that replaces it.
+#[test]
+fn a_result_of_short_rank_is_read() {
+    let copy = Copy::new();
+    copy.edit("experiment.toml", |text| {
+        text.replace("pair_relation = \"common\"", "pair_relation = \"common\"\nextensions = [\"mounting-turn\"]")
+    });
+    for _ in 0..2 {
+        let run = copy.calibrate(&["--out", "."]);
+        assert!(run.status.success(), "{}", text(&run));
+    }
+    let output = compensate(&copy, &["f.csv"]);
+    assert!(output.status.success(), "{}", text(&output));
+}
+
 /// The specific forces read, by the result's own error model, as the record does.
 #[test]
 fn readings_are_explained() {
