@@ -2,15 +2,15 @@
 
 use centrical::Group;
 use centrical_session::{
-    CalibrationResult, OutlyingPlateau, OutputSummary, ParameterEstimate, RivalSummary, TermSummary, ValiditySummary,
-    customary,
+    CalibrationResult, OutlyingPlateau, OutputSummary, ParameterEstimate, RestsOn, RivalSummary, TermSummary,
+    ValiditySummary, customary,
 };
 
 use super::axes::axes as other_axes;
 use super::drift::drift;
-use super::phrases::{chance_to_three_places, changes_for, legend, pattern_in_words};
+use super::phrases::{chance_to_three_places, legend, pattern_in_words};
 use super::rests::rests;
-use super::rests_on::{priors as prior_table, rests_on_text};
+use super::rests_on::{priors as prior_table, remedy, rests_on_text};
 use super::screen::Screen;
 use super::table::{Align, Cell, Table};
 use crate::document::{counts_as_exact, rival, speeds};
@@ -298,7 +298,7 @@ fn validity(screen: &mut Screen, result: &CalibrationResult) {
     }
     let is_of_rests = result.rests().count() == result.plateaus.len();
     outlying(screen, result, &validity.outlying, is_of_rests);
-    rivals(screen, validity);
+    rivals(screen, validity, &result.rests_on);
     if validity.patterns.is_empty() && validity.patterns_tested > 0 {
         let against = if is_of_rests { "time" } else { "speed, position, radius and time" };
         let count = counted(validity.patterns_tested, "pattern");
@@ -358,7 +358,7 @@ fn outlying(screen: &mut Screen, result: &CalibrationResult, outlying: &[Outlyin
 }
 
 /// What the residuals show of effects that the model leaves out, and how to put the first into the model.
-fn rivals(screen: &mut Screen, validity: &ValiditySummary) {
+fn rivals(screen: &mut Screen, validity: &ValiditySummary, rests_on: &[RestsOn]) {
     let (shown, tested) = (&validity.rivals, validity.rivals_tested);
     if shown.is_empty() && tested > 0 {
         screen.fact(
@@ -377,6 +377,6 @@ fn rivals(screen: &mut Screen, validity: &ValiditySummary) {
         screen.fact("", &text);
     }
     if let Some(first) = shown.first().and_then(RivalSummary::rival) {
-        screen.fact("", &format!("models fits it in full; to have it in the model: {}", changes_for(&[first])));
+        screen.fact("", &remedy(first, rests_on));
     }
 }

@@ -57,10 +57,24 @@ fn protection(effect: &RestsOn) -> String {
             "protect: state {bound} under [uncertainty]; or {change}, at {price:.1} times the uncertainty of {}",
             effect.parameter
         ),
-        None => format!(
-            "protect: state {bound} under [uncertainty]; as an unknown it would leave parameters of the instrument undetermined"
-        ),
+        None => format!("protect: {}", bound_alone(&effect.name)),
     }
+}
+
+/// How the model takes in an effect that the residuals show: as an unknown, or by its size alone.
+pub(super) fn remedy(shown: Rival, effects: &[RestsOn]) -> String {
+    let name = shown.name();
+    let is_lost = |effect: &RestsOn| effect.name == name && effect.price_as_unknown.is_none();
+    if Rival::COMMON.contains(&shown) && effects.iter().any(is_lost) {
+        return bound_alone(&name);
+    }
+    format!("models fits it in full; to have it in the model: {}", changes_for(&[shown]))
+}
+
+/// For an effect that takes parameters of the instrument with it.
+fn bound_alone(name: &str) -> String {
+    let bound = name.replace('-', "_");
+    format!("state {bound} under [uncertainty]; as an unknown it would leave parameters of the instrument undetermined")
 }
 
 /// What the data add to prior knowledge: for each prior its parameter, and the standard uncertainty after the data over that before.
@@ -79,5 +93,33 @@ pub(super) fn priors<'p>(screen: &mut Screen, given: impl Iterator<Item = (&'p s
         screen.gap();
         screen.head("PRIORS", "standard uncertainty after the data over that before");
         screen.table(table);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// An effect that would take parameters of the instrument with it is stated by its size; another one is an unknown.
+    #[test]
+    fn an_effect_that_costs_a_parameter_is_stated() {
+        let effect = |price: Option<f64>| RestsOn {
+            name: "mounting-shift".to_owned(),
+            unknown: "mounting_shift_1[2]".to_owned(),
+            unit: "m".to_owned(),
+            group: Group::MountingShift,
+            smallest_shown: Some(1e-6),
+            parameter: "df_2".to_owned(),
+            shift: 1e-4,
+            standard_uncertainties: 5.0,
+            reading: 1e-3,
+            price_as_unknown: price,
+        };
+        let shown = Rival::Effect(Extension::MountingShift);
+        let stated = "state mounting_shift under [uncertainty]; as an unknown it would leave parameters of the instrument undetermined";
+        assert_eq!(remedy(shown, &[effect(None)]), stated);
+        let unknown = "models fits it in full; to have it in the model: add \"mounting-shift\" to extensions";
+        assert_eq!(remedy(shown, &[effect(Some(2.0))]), unknown);
+        assert_eq!(remedy(shown, &[]), unknown);
     }
 }
