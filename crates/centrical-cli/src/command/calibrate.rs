@@ -1,6 +1,6 @@
 //! `centrical calibrate SESSION`: from a session folder to calibrated parameters.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use centrical_report::{refuse_outputs, states_text};
 use centrical_session::{

@@ -192,6 +192,7 @@ pub(super) fn rival(rival: Rival) -> &'static str {
             Extension::Disturbance(Course::FourthPowerOfSpeed) => {
                 "disturbance with the fourth power of the speed: rectified vibration of an imbalance"
             }
+            Extension::Disturbance(Course::OwnRate) => "disturbance with the angular rate about the own axis",
             Extension::Disturbance(Course::Yield) => "proof mass that yields to its force",
             Extension::Disturbance(Course::Time) => "bias that changes over the session",
             Extension::Disturbance(Course::TimeScale) => "scale that changes over the session",

@@ -188,6 +188,7 @@ pub(super) fn rival(rival: Rival) -> &'static str {
             Extension::Disturbance(Course::FourthPowerOfSpeed) => {
                 "возмущение с четвёртой степенью скорости: выпрямленная вибрация дисбаланса"
             }
+            Extension::Disturbance(Course::OwnRate) => "возмущение с угловой скоростью вокруг собственной оси",
             Extension::Disturbance(Course::Yield) => "чувствительная масса, податливая силе",
             Extension::Disturbance(Course::Time) => "изменение нуля за время эксперимента",
             Extension::Disturbance(Course::TimeScale) => "изменение масштаба за время эксперимента",

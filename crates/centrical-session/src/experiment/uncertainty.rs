@@ -169,7 +169,9 @@ fn growth(unknown: &Parameter) -> Option<(Dimension, Dimension, i32)> {
         Effect::Monomial { monomial, .. } if monomial.degree() > 0 => {
             Some((Dimension::Acceleration, Dimension::Acceleration, i32::from(monomial.degree())))
         }
-        Effect::Disturbance { follows: Course::Speed, .. } => Some((Dimension::Acceleration, Dimension::Speed, 1)),
+        Effect::Disturbance { follows: Course::Speed | Course::OwnRate, .. } => {
+            Some((Dimension::Acceleration, Dimension::Speed, 1))
+        }
         Effect::Disturbance { follows: Course::SquaredSpeed, .. } => {
             Some((Dimension::Acceleration, Dimension::Speed, 2))
         }

@@ -14,6 +14,8 @@ pub enum Course {
     SquaredSpeed,
     /// `Omega^4` [rad^4/s^4]: rectified vibration of an imbalance, whose force is one with `Omega^2`.
     FourthPowerOfSpeed,
+    /// `Omega_i`, the angular rate about the newtonometer's own axis [rad/s]: a gyroscopic moment, or a field that is at rest in the room.
+    OwnRate,
     /// `-M_ii f_i`: a proof mass that yields to its force, in open loop or a soft loop.
     Yield,
     /// The order of the plateaus in the session, -1/2 to 1/2.
@@ -58,6 +60,7 @@ impl Course {
             Self::Speed => ("m/s", BIAS / square.sqrt(), false, "|Omega|"),
             Self::SquaredSpeed => ("m", BIAS / square, false, "Omega^2"),
             Self::FourthPowerOfSpeed => ("m s^2", BIAS / square.powi(2), false, "Omega^4"),
+            Self::OwnRate => ("m/s", BIAS / square.sqrt(), false, "Omega_i, about the own axis"),
             Self::Yield => ("s^2", 5e-4 / Law::Load.full_scale(), false, "-M_ii f_i"),
             Self::Time => ("m/s^2", BIAS, true, "t"),
             Self::Wander(_) => ("m/s^2", BIAS, true, "P_1(2t), P_2(2t), P_3(2t)"),
@@ -81,6 +84,7 @@ impl Course {
             Self::Speed => set_point.omega.abs(),
             Self::SquaredSpeed => set_point.omega.powi(2),
             Self::FourthPowerOfSpeed => set_point.omega.powi(4),
+            Self::OwnRate => set_point.omega * experiment.position_of(set_point).p_zy[(axis, 2)],
             Self::Yield => -Nominal::of(experiment, set_point).m[(axis, axis)] * f0(),
             Self::Time => history.time,
             Self::Wander(degree) => legendre(degree, 2.0 * history.time),

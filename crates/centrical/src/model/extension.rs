@@ -95,7 +95,7 @@ pub enum Difference {
 
 impl Extension {
     /// Every extension with its name as written in sessions and plans.
-    pub const NAMED: [(&'static str, Self); 42] = [
+    pub const NAMED: [(&'static str, Self); 43] = [
         ("elastic-turn-speed", Self::ElasticTurn(Law::Speed)),
         ("elastic-turn-load", Self::ElasticTurn(Law::Load)),
         ("arm-stretch-speed", Self::ArmStretch(Law::Speed)),
@@ -129,6 +129,7 @@ impl Extension {
         ("spin-speed", Self::Disturbance(Course::Speed)),
         ("spin-square", Self::Disturbance(Course::SquaredSpeed)),
         ("spin-fourth", Self::Disturbance(Course::FourthPowerOfSpeed)),
+        ("own-rate", Self::Disturbance(Course::OwnRate)),
         ("yield", Self::Disturbance(Course::Yield)),
         ("bias-drift", Self::Disturbance(Course::Time)),
         ("bias-wander", Self::BiasWander),
