@@ -38,4 +38,5 @@ pub use estimator::Estimator;
 pub use phase::{BridgedGaps, Phase};
 pub use power_law::PowerLaw;
 pub use spectrum::{Spectrum, SpectrumLine};
+pub use spikes::leave_out_spikes;
 pub use terms::{Coefficient, NoiseTerm, NoiseTerms};

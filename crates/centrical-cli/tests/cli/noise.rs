@@ -120,3 +120,27 @@ fn a_record_with_ramps_is_named() {
     assert!(text(&output).contains("f1: the record stands still 9 times, from"), "{}", text(&output));
     assert!(text(&output).contains("choose one stretch with --from and --to, or a plateau"), "{}", text(&output));
 }
+
+/// An error code once in a half second of the beginning, or in a twentieth of the readings: no stretches, and what it is.
+#[test]
+fn error_codes_are_no_staircase() {
+    let copy = Copy::new();
+    let said = |is_coded: &dyn Fn(usize) -> bool| {
+        let mut random = Random::new(4);
+        let reading = |k: usize, noise: f64| if is_coded(k) { 99.0 } else { 9.8 + 1e-3 * noise };
+        let row = |k: usize| format!("{},{}\n", k as f64 / 100.0, reading(k, random.normal()));
+        fs::write(copy.out().join("coded.csv"), "t,f1\n".to_owned() + &(0..20_000).map(row).collect::<String>())
+            .unwrap();
+        let output = copy.run(&["noise", "coded.csv", "--readings", "f1"]);
+        (output.status.code(), text(&output))
+    };
+    let (code, few) = said(&|k| k < 1000 && k % 50 == 25);
+    assert_eq!(code, Some(0), "{few}");
+    assert!(few.contains("left out as spikes: 20"), "{few}");
+    let (code, many) = said(&|k| k % 20 == 5);
+    assert_eq!(code, Some(1), "{many}");
+    assert!(
+        many.contains("f1: no noise terms: found 1000 of 20000 readings at 99.0, far from all others: an error code"),
+        "{many}"
+    );
+}

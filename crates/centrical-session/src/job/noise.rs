@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use centrical::reduction::Staircase;
-use centrical::stability::{Analysis, Estimator};
-use centrical::{OnProgress, advance};
+use centrical::stability::{Analysis, Estimator, NoiseError, leave_out_spikes};
+use centrical::{OnProgress, Stopped, advance};
 use centrical_table::{ColumnName, Extent, Rule, Source, TableLines};
 use rayon::prelude::*;
 
@@ -112,7 +112,8 @@ fn analyse_noise(series: &Series, estimators: &[Estimator], progress: OnProgress
     let analysed = columns.map(|(name, unit, values)| {
         let failed = |source| Error::noise(&series.file, name, source);
         let noise = Analysis::of(&series.t, values, estimators, &|()| progress(0)).map_err(failed)?;
-        let staircase = Staircase::of(&series.t, values, &|()| progress(0))?;
+        let is_coded = matches!(noise.terms, Err(NoiseError::ErrorCode { .. }));
+        let staircase = if is_coded { None } else { staircase(&series.t, values, &|()| progress(0))? };
         Ok::<_, Error>(ReadingNoise { name: name.clone(), unit: unit.clone(), staircase, noise })
     });
     Ok(NoiseAnalysis {
@@ -121,6 +122,15 @@ fn analyse_noise(series: &Series, estimators: &[Estimator], progress: OnProgress
         confidence: Analysis::CONFIDENCE,
         readings: analysed.collect::<Result<_, Error>>()?,
     })
+}
+
+/// Whether readings move from one steady stretch to another, those that are missing or spikes left out.
+fn staircase(t: &[f64], values: &[f64], progress: OnProgress<()>) -> Result<Option<Staircase>, Stopped> {
+    let mut values = values.to_owned();
+    leave_out_spikes(&mut values, progress)?;
+    let kept = t.iter().zip(values).filter(|(_, value)| value.is_finite());
+    let (t, values): (Vec<f64>, Vec<f64>) = kept.unzip();
+    Staircase::of(&t, &values, progress)
 }
 
 /// Columns of readings, and their time.

@@ -47,8 +47,8 @@ pub struct Staircase {
 
 impl Staircase {
     /// Whether a signal moves from one steady stretch to another: it stands still for half of the time, at values that differ by
-    /// more than a hundred times the noise of a sample and a twentieth of the largest. Drift and noise of any colour do not.
-    /// `progress` is asked again and again.
+    /// more than a hundred times the noise of a sample and a twentieth of the largest. Drift and noise of any colour do not, but
+    /// spikes may: they are to be left out before. `progress` is asked again and again.
     ///
     /// # Errors
     /// [`Stopped`] when the caller stops the search.

@@ -3,7 +3,7 @@
 use super::deviation::Deviation;
 use super::error::NoiseError;
 use super::estimator::Estimator;
-use super::faults::{is_fine, refuse_faults, refuse_held};
+use super::faults::{is_fine, named, refuse_faults, refuse_held};
 use super::grid::Grid;
 use super::phase::{BridgedGaps, Phase};
 use super::spectrum::Spectrum;
@@ -75,6 +75,7 @@ impl Analysis {
             ))?,
             terms: unless_stopped(
                 held.and_then(|()| refuse_faults(&grid.readings, is_fine))
+                    .map_err(|fault| named(fault, y))
                     .and_then(|()| NoiseTerms::of(&phase, progress)),
             )?,
         })

@@ -103,6 +103,19 @@ pub enum NoiseError {
         /// Readings in the longest run.
         longest: usize,
     },
+    /// One reading that repeats, far from all others.
+    #[error(
+        "found {found} of {readings} readings at {value:?}, far from all others: an error code, or the end of the range; expected noise in \
+         each: leave such rows out, or their fields empty"
+    )]
+    ErrorCode {
+        /// Such readings.
+        found: usize,
+        /// Readings in all.
+        readings: usize,
+        /// The reading.
+        value: f64,
+    },
     /// Readings pile up at an end of their range.
     #[error("found {found} readings at {value:?}, an end of their range, expected noise that nothing cuts off")]
     Saturated {

@@ -21,12 +21,13 @@ pub(super) fn is_fine(readings: &[f64], progress: OnProgress<()>) -> Result<bool
     Ok(!changes.is_empty() && watched_median(&mut changes, progress)? > DIGITS * digit)
 }
 
+/// Held readings of this part of the record move no coefficient by more than its uncertainty.
+const FEW: usize = 1000;
+
 /// Refuses readings that repeat more often, or for longer, than noise does, if they are fine.
 pub(super) fn refuse_held(readings: &[f64], is_fine: bool) -> Result<(), NoiseError> {
     /// Of fine readings fewer than one in ten repeats by chance.
     const MANY: usize = 4;
-    /// Held readings of this part move no coefficient by more than its uncertainty.
-    const FEW: usize = 1000;
     let lengths: Vec<usize> = readings.chunk_by(f64::eq).map(<[f64]>::len).collect();
     let (repeated, longest) = (readings.len() - lengths.len(), lengths.iter().copied().max().unwrap_or(0));
     // The longest run is judged by the rate of the others.
@@ -52,6 +53,25 @@ pub(super) fn refuse_faults(readings: &[f64], is_fine: bool) -> Result<(), Noise
     let missing: usize = gaps.filter(|gap| LONG * gap < readings.len()).sum();
     let readings = readings.len();
     if 50 * missing > readings { Err(NoiseError::ScatteredGaps { missing, readings }) } else { Ok(()) }
+}
+
+/// The fault of readings, spikes among them, in place of one that follows from it: the lowest or the highest reading is an error code if it
+/// is farther from all others than most of these are from each other.
+pub(super) fn named(fault: NoiseError, readings: &[f64]) -> NoiseError {
+    /// Part of the others that may be other codes or spikes, on either side.
+    const ODD: usize = 10;
+    let mut sorted: Vec<f64> = readings.iter().copied().filter(|y| y.is_finite()).collect();
+    sorted.sort_by(f64::total_cmp);
+    let code = |value: &f64| {
+        let others: Vec<f64> = sorted.iter().copied().filter(|y| y != value).collect();
+        let odd = others.len() / ODD;
+        let range = others.get(others.len().checked_sub(odd + 1)?)? - others[odd];
+        let nearest = others.iter().map(|y| (y - value).abs()).fold(f64::INFINITY, f64::min);
+        let (found, readings) = (sorted.len() - others.len(), readings.len());
+        let is_code = FEW * found > readings && nearest > range;
+        is_code.then_some(NoiseError::ErrorCode { found, readings, value: *value })
+    };
+    sorted.first().into_iter().chain(sorted.last()).find_map(code).unwrap_or(fault)
 }
 
 #[cfg(test)]
@@ -102,5 +122,30 @@ mod tests {
             gap[10_000..20_000].fill(f64::NAN);
             assert_eq!(faults(&gap), Ok(()));
         }
+    }
+
+    /// Readings of one value far from all others, whatever fault they look like; not those that stand among the others.
+    #[test]
+    fn error_codes_are_named() {
+        let fault = || NoiseError::Constant;
+        for step in [0.0, 0.01] {
+            let coded = |is_coded: &dyn Fn(usize) -> bool, code: f64| -> Vec<f64> {
+                let read = |(k, y): (usize, f64)| if is_coded(k) { code } else { y };
+                noise(step).into_iter().enumerate().map(read).collect()
+            };
+            let scattered = coded(&|k| k % 20 == 7, 99.0);
+            let named_as = NoiseError::ErrorCode { found: 2500, readings: 50_000, value: 99.0 };
+            assert_eq!(named(fault(), &scattered), named_as);
+            let in_runs = coded(&|k| k / 10 % 100 == 7, -30.0);
+            assert!(matches!(named(fault(), &in_runs), NoiseError::ErrorCode { found: 500, .. }));
+            for value in [0.3, 2.3, 5.0] {
+                assert_eq!(named(fault(), &coded(&|k| (9000..9500).contains(&k), value)), fault());
+            }
+            let clipped: Vec<f64> = noise(step).iter().map(|y| y.min(2.3)).collect();
+            assert_eq!(named(fault(), &clipped), fault());
+            assert_eq!(named(fault(), &noise(step)), fault());
+        }
+        assert_eq!(named(fault(), &[1.0; 100]), fault());
+        assert_eq!(named(fault(), &[f64::NAN; 100]), fault());
     }
 }
