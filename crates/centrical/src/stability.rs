@@ -20,6 +20,7 @@ mod error;
 mod estimator;
 mod faults;
 mod grid;
+mod jump;
 mod log_fit;
 mod log_moments;
 mod phase;

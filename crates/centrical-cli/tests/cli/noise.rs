@@ -144,3 +144,17 @@ fn error_codes_are_no_staircase() {
         "{many}"
     );
 }
+
+/// A jump of the bias has its time on the clock of the record, and its size.
+#[test]
+fn a_jump_of_the_bias_is_named() {
+    let copy = Copy::new();
+    let mut random = Random::new(5);
+    let jump = |k: u32| if k < 12_000 { 0.0 } else { -2e-3 };
+    let row = |k: u32| format!("{},{}\n", 50.0 + f64::from(k) / 100.0, 9.8 + jump(k) + 1e-3 * random.normal());
+    fs::write(copy.out().join("jump.csv"), "t,f1\n".to_owned() + &(0..20_000).map(row).collect::<String>()).unwrap();
+    let output = copy.run(&["noise", "jump.csv", "--readings", "f1"]);
+    assert_eq!(output.status.code(), Some(1), "{}", text(&output));
+    let named = "f1: no noise terms: found a jump by -2.16e-3 at 169.98 s";
+    assert!(text(&output).contains(named), "{}", text(&output));
+}

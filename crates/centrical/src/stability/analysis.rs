@@ -5,9 +5,10 @@ use super::error::NoiseError;
 use super::estimator::Estimator;
 use super::faults::{is_fine, named, refuse_faults, refuse_held};
 use super::grid::Grid;
+use super::jump::refuse_jump;
 use super::phase::{BridgedGaps, Phase};
 use super::spectrum::Spectrum;
-use super::spikes::leave_out_spikes;
+use super::spikes::{last_digit, leave_out_spikes};
 use super::terms::NoiseTerms;
 use crate::progress::{OnProgress, advance};
 
@@ -76,7 +77,7 @@ impl Analysis {
             terms: unless_stopped(
                 held.and_then(|()| refuse_faults(&grid.readings, is_fine))
                     .map_err(|fault| named(fault, y))
-                    .and_then(|()| NoiseTerms::of(&phase, progress)),
+                    .and_then(|()| terms(&phase, &grid, t[0], progress)),
             )?,
         })
     }
@@ -85,6 +86,16 @@ impl Analysis {
     pub fn quotable(&self) -> Option<&NoiseTerms> {
         self.terms.as_ref().ok().filter(|terms| terms.is_consistent())
     }
+}
+
+/// The noise terms, unless a jump stands behind those that are slower than white noise; the grid begins at `start` [s].
+fn terms(phase: &Phase, grid: &Grid, start: f64, progress: OnProgress<()>) -> Result<NoiseTerms, NoiseError> {
+    let terms = NoiseTerms::of(phase, progress);
+    if !terms.as_ref().is_ok_and(NoiseTerms::is_white) {
+        let lacking = grid.readings.iter().position(|y| y.is_finite()).unwrap_or(0);
+        refuse_jump(phase, last_digit(&grid.readings), start + lacking as f64 * grid.interval, progress)?;
+    }
+    terms
 }
 
 /// What a part of the analysis gave, or why it could not; a part that was stopped stops the whole.

@@ -124,6 +124,19 @@ pub enum NoiseError {
         /// The value.
         value: f64,
     },
+    /// The bias jumps.
+    #[error(
+        "found a jump by {size:.2e} at {place:.2} s (means over {time:.2} s before and after), expected noise about one level: a jump \
+         looks like a random walk; choose a stretch before it or after it"
+    )]
+    Jump {
+        /// By how much the mean changes [unit of the readings].
+        size: f64,
+        /// When [s].
+        place: f64,
+        /// Averaging time of the means [s].
+        time: f64,
+    },
     /// Too many short gaps: means of fewer readings have larger deviations.
     #[error(
         "found {missing} of {readings} readings missing in short gaps, expected a fiftieth at most: means of fewer readings deviate more"

@@ -119,6 +119,12 @@ impl NoiseTerms {
         self.degrees_of_freedom > 0 && chi_squared_tail(self.chi_squared, self.degrees_of_freedom) >= 1e-3
     }
 
+    /// Whether nothing slower than white noise shows.
+    pub(super) fn is_white(&self) -> bool {
+        let slow = &self.coefficients[NoiseTerm::BiasInstability as usize..];
+        self.is_consistent() && slow.iter().all(|term| matches!(term, Coefficient::NotDetermined { .. }))
+    }
+
     /// Allan deviation at `tau` (s) of the best fit: a determined ramp, and the other terms at their most likely
     /// values even where the record cannot separate them.
     pub fn allan_deviation(&self, tau: f64) -> f64 {

@@ -359,3 +359,61 @@ fn an_analysis_ends_when_it_is_stopped() {
         assert!(calls.load(Ordering::Relaxed) <= at + 1);
     }
 }
+
+/// The jump that refuses the terms of readings, if one does: its size, its time, and the averaging time.
+fn jump(readings: &[f64]) -> Option<(f64, f64, f64)> {
+    let t: Vec<f64> = (0..readings.len()).map(|k| 7.0 + k as f64 * TAU0).collect();
+    match Analysis::of(&t, readings, &[], &unwatched).unwrap().terms {
+        Err(NoiseError::Jump { size, place, time }) => Some((size, place, time)),
+        _ => None,
+    }
+}
+
+/// Noise that changes evenly, however slow: no jump is one in 10,000 records by chance.
+#[test]
+fn noise_has_no_jump() {
+    let none = Recipe::default();
+    let recipes = [
+        Recipe { random_walk: 1e-3, ..none },
+        Recipe { white: 1e-3, random_walk: 1e-3, ..none },
+        Recipe { bias_instability: 1e-3, ..none },
+        Recipe { white: 1e-3, bias_instability: 4e-3, ..none },
+        Recipe { white: 1e-3, random_walk: 5e-3, ramp: 8e-3, ..none },
+    ];
+    for recipe in recipes {
+        let found = (0..SEEDS).filter(|seed| jump(&recipe.readings(READINGS, TAU0, *seed)).is_some()).count();
+        assert_eq!(found, 0, "{recipe:?}");
+    }
+}
+
+/// A jump of twice the standard deviation of a reading, and a warm moment that fades: each was a random walk.
+#[test]
+fn a_jump_is_no_random_walk() {
+    let recipe = Recipe { white: 1e-3, ..Recipe::default() };
+    let deviation = recipe.white / TAU0.sqrt();
+    for seed in 0..SEEDS {
+        let readings = recipe.readings(READINGS, TAU0, seed);
+        let at = READINGS / 4 + seed * READINGS / 120;
+        let after = |shape: &dyn Fn(f64) -> f64| -> Vec<f64> {
+            let shape = |k: usize| if k < at { 0.0 } else { deviation * shape((k - at) as f64 * TAU0) };
+            readings.iter().enumerate().map(|(k, y)| y + shape(k)).collect()
+        };
+        let (size, place, time) = jump(&after(&|_| 2.0)).unwrap_or_else(|| panic!("seed {seed}"));
+        // The larger of the means of any places within an eighth of their time.
+        let sigma = deviation * (2.0 * TAU0 / time).sqrt();
+        assert!((size - 2.0 * deviation).abs() < 5.0 * sigma, "seed {seed}: {size}");
+        assert!((place - 7.0 - at as f64 * TAU0).abs() < 0.5 * time, "seed {seed}: {place}, {time}");
+        assert!(jump(&after(&|t| 4.0 * (-t / 10.0).exp())).is_some(), "seed {seed}");
+    }
+}
+
+/// Louder noise in one half of a record is no jump of its mean.
+#[test]
+fn a_louder_half_is_no_jump() {
+    let recipe = Recipe { white: 1e-3, ..Recipe::default() };
+    for seed in 0..SEEDS {
+        let mut readings = recipe.readings(READINGS, TAU0, seed);
+        readings[READINGS / 2..].iter_mut().for_each(|y| *y *= 2.0);
+        assert_eq!(jump(&readings), None, "seed {seed}");
+    }
+}
