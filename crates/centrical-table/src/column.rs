@@ -128,23 +128,49 @@ pub(crate) struct Before {
     pub last: Vec<f64>,
 }
 
-/// A value that runs backwards: which field, and what was found.
+/// A value that runs backwards: which field, and the value before it.
 pub(crate) struct Backwards {
     pub field: usize,
-    pub found: String,
-    /// Whether a time of the day would run so over midnight.
-    pub may_be_midnight: bool,
+    pub value: f64,
+    pub before: f64,
 }
 
 impl Backwards {
-    /// A value of a field that is below the one before it.
-    pub fn new(field: usize, value: f64, before: f64) -> Self {
+    /// What was found.
+    pub fn found(&self) -> String {
+        format!("{} after {}", self.value, self.before)
+    }
+
+    /// What is expected of a value, with the cause where clocks run backwards so. `is_of_day`: whether it stands for a time of the day.
+    pub fn expected(&self, is_of_day: bool) -> String {
         const DAY: f64 = 86_400.0;
-        let is_of_day = (0.0..DAY).contains(&value) && (0.0..DAY).contains(&before);
-        Self {
-            field,
-            found: format!("{value} after {before}"),
-            may_be_midnight: is_of_day && before - value > DAY / 2.0,
+        const HOUR: f64 = 3600.0;
+        /// Numbers at which clocks begin anew, in s or ms.
+        const ENDS: [(f64, &str); 9] = [
+            (65_536.0, "a counter of 16 bits"),
+            (65.536, "a counter of 16 bits"),
+            (4_294_967_296.0, "a counter of 32 bits"),
+            (4_294_967.296, "a counter of 32 bits"),
+            (4_294.967_296, "a counter of 32 bits"),
+            (DAY, "a day"),
+            (1e3 * DAY, "a day"),
+            (7.0 * DAY, "a week"),
+            (7e3 * DAY, "a week"),
+        ];
+        let &Self { value, before, .. } = self;
+        if is_of_day && before < DAY && before - value > DAY / 2.0 {
+            return ASCENDING_OVER_MIDNIGHT.to_owned();
+        }
+        // A thousandth about the end is there by chance once in a thousand clocks.
+        let is_over = |end: f64| (0.0..end).contains(&value) && before < end && end - before + value < 1e-3 * end;
+        match ENDS.into_iter().find(|(end, _)| is_over(*end)) {
+            Some((end, what)) => format!("{ASCENDING}: {what} ends at {end}, add {end} to the times after it"),
+            None if (HOUR - 60.0..=HOUR).contains(&(before - value)) => {
+                format!(
+                    "{ASCENDING}: after an hour that comes twice, as summer time ends, stamps need UTC or an offset"
+                )
+            }
+            None => ASCENDING.to_owned(),
         }
     }
 }
@@ -160,7 +186,7 @@ impl Before {
         for (field, column) in rows.iter().enumerate() {
             let (first, last) = (column.first()?, column.last()?);
             if *first < self.last[field] && fields[field].rule.ascends() {
-                return Some(Backwards::new(field, *first, self.last[field]));
+                return Some(Backwards { field, value: *first, before: self.last[field] });
             }
             self.last[field] = *last;
         }
@@ -215,8 +241,8 @@ pub(crate) fn runs_backwards(values: &[f64]) -> bool {
 }
 
 /// What an ascending column should be.
-pub(crate) const ASCENDING: &str = "a time that does not run backwards";
+const ASCENDING: &str = "a time that does not run backwards";
 
 /// The same of a time of the day that ran over midnight.
-pub(crate) const ASCENDING_OVER_MIDNIGHT: &str = "a time that does not run backwards: after midnight a time of the day needs a \
+const ASCENDING_OVER_MIDNIGHT: &str = "a time that does not run backwards: after midnight a time of the day needs a \
                                                   date, as in time = { date = \"Date\", column = \"Time\" } under [columns]";

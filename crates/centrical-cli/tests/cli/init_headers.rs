@@ -82,6 +82,36 @@ fn time_and_units_of_readings_stand_in_their_names() {
     assert_lines(&draft, &["time = \"clock\"  # GUESS: the first column", "output_unit = \"g\"  # FOUND"]);
 }
 
+/// A record that lasts a thousand times as long as its telemetry has milliseconds, and telemetry alike; whole numbers count samples.
+#[test]
+fn a_time_without_a_unit_is_as_long_as_its_telemetry() {
+    let with_times = |part: &str, time: &dyn Fn(usize, f64) -> f64| {
+        let copy = Copy::new();
+        for file in fs::read_dir(copy.session().join(part)).unwrap() {
+            let path = file.unwrap().path();
+            let text = fs::read_to_string(&path).unwrap();
+            let (header, rows) = text.split_once('\n').unwrap();
+            let row = |(k, line): (usize, &str)| {
+                let (t, readings) = line.split_once(',').unwrap();
+                format!("{},{readings}\n", time(k, t.parse().unwrap()))
+            };
+            fs::write(&path, format!("{header}\n{}", rows.lines().enumerate().map(row).collect::<String>())).unwrap();
+        }
+        draft(&copy, &["records", "telemetry"])
+    };
+    for (unit, factor) in [("ms", 1e3), ("us", 1e6), ("min", 1.0 / 60.0), ("h", 1.0 / 3600.0)] {
+        let draft = with_times("records", &|_, t| t * factor);
+        let time = format!("time = {{ column = \"t\", unit = \"{unit}\" }}  # GUESS: the file names no unit");
+        assert_lines(&draft, &[&time, "telemetry_time = \"t\"  # FOUND"]);
+        assert!(!draft.contains("arm = [\"?\""), "{draft}");
+    }
+    let draft = with_times("telemetry", &|_, t| t * 1e3);
+    assert_lines(&draft, &["time = \"t\"  # FOUND", "telemetry_time = { column = \"t\", unit = \"ms\" }  # GUESS"]);
+    let draft = with_times("records", &|k, _| k as f64);
+    assert_lines(&draft, &["time = { column = \"t\", rate = \"?\" }"]);
+    assert!(draft.contains("by the length of the telemetry about 100.0 Hz"), "{draft}");
+}
+
 #[test]
 fn a_unit_that_stands_nowhere_is_not_found() {
     let copy = Copy::new();

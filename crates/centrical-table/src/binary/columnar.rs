@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
 
-use crate::column::{ASCENDING, Before, ColumnName, Field, LARGEST_NUMBER, Rows, Rule, runs_backwards};
+use crate::column::{Backwards, Before, ColumnName, Field, LARGEST_NUMBER, Rows, Rule, runs_backwards};
 use crate::error::{Error, Place, quoted};
 use crate::stamp::{Stamps, TickForm};
 
@@ -161,7 +161,8 @@ fn check(file: &Path, fields: &[Field], rows: &Rows, before: &mut Before) -> Res
                 return wrong(i, if missing { "no value".to_owned() } else { value.to_string() }, &field.expected);
             }
             if value < last && field.rule.ascends() {
-                return wrong(i, format!("{value} after {last}"), ASCENDING);
+                let backwards = Backwards { field: 0, value: *value, before: *last };
+                return wrong(i, backwards.found(), &backwards.expected(false));
             }
             *last = *value;
         }

@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use memchr::memchr;
 
 use super::lines::TABLE;
-use crate::column::{ASCENDING, ASCENDING_OVER_MIDNIGHT, Backwards, Field};
+use crate::column::{Backwards, Field};
 use crate::error::quoted;
 use crate::stamp::StampKind;
 
@@ -24,9 +24,8 @@ impl Fault {
 
     /// A value that is below the one before it, in a row whose first field is that stamp.
     pub fn of(backwards: Backwards, fields: &[Field], stamp: Option<StampKind>) -> Self {
-        let Backwards { field, found, may_be_midnight } = backwards;
-        let is_over_midnight = field == 0 && may_be_midnight && stamp == Some(StampKind::TimeOfDay);
-        fields[field].fault(found, if is_over_midnight { ASCENDING_OVER_MIDNIGHT } else { ASCENDING })
+        let is_of_day = backwards.field == 0 && stamp == Some(StampKind::TimeOfDay);
+        fields[backwards.field].fault(backwards.found(), &backwards.expected(is_of_day))
     }
 }
 

@@ -199,7 +199,7 @@ impl Piece {
             if runs_backwards(column)
                 && let Some(row) = column.windows(2).position(|pair| pair[1] < pair[0])
             {
-                let backwards = Backwards::new(k, column[row + 1], column[row]);
+                let backwards = Backwards { field: k, value: column[row + 1], before: column[row] };
                 let line = self.line_of(row + 1, skipped);
                 self.fault = Some((line, Fault::of(backwards, fields, self.stamp_kind(line, layout))));
             }

@@ -207,6 +207,24 @@ fn dates_beside_times_of_the_day() {
             "line 1, Time and Time: found column 2 asked for twice, expected a column of its own for every quantity",
         ),
         (
+            "Time;f1;f2\n604799.75;1;1\n0.25;2;2\n",
+            name("Time"),
+            "line 3, Time: found 0.25 after 604799.75, expected a time that does not run backwards: a week ends at 604800, add 604800 to \
+             the times after it",
+        ),
+        (
+            "Time;f1;f2\n4294967290;1;1\n4;2;2\n",
+            name("Time"),
+            "line 3, Time: found 4 after 4294967290, expected a time that does not run backwards: a counter of 32 bits ends at \
+             4294967296, add 4294967296 to the times after it",
+        ),
+        (
+            "Time;f1;f2\n2026-10-25T02:59:59.75;1;1\n2026-10-25T02:00:00.00;2;2\n",
+            name("Time"),
+            "line 3, Time: found 1792893600 after 1792897199.75, expected a time that does not run backwards: after an hour that comes \
+             twice, as summer time ends, stamps need UTC or an offset",
+        ),
+        (
             "Time;f1;f2\n0.75;1;1\n0.25;2;2\n",
             name("Time"),
             "line 3, Time: found 0.25 after 0.75, expected a time that does not run backwards",

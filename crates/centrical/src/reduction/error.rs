@@ -30,7 +30,8 @@ pub enum ReductionError {
     },
     /// Samples that hardly last.
     #[error(
-        "found {samples} samples from {from} s to {to} s, expected times that go on: a clock that stands still, or another column"
+        "found {samples} samples from {from} s to {to} s, expected times that go on: a clock that stands still, another unit of time than s, or \
+         another column"
     )]
     TimeStands {
         /// Samples that can be read.
@@ -110,6 +111,19 @@ pub enum ReductionError {
         /// The tangential part of the readings over the expected one.
         part: f64,
     },
+    /// The ramps fit time in another unit.
+    #[error(
+        "the {ramps} ramps fit time in {unit}: found {part:.0} times the expected pull across the arm, expected 1; state the unit beside the \
+         column of time, as in time = {{ column = \"t\", unit = \"{unit}\" }}"
+    )]
+    TimeUnit {
+        /// Ramps that were compared.
+        ramps: usize,
+        /// The tangential part of the readings over the expected one.
+        part: f64,
+        /// The unit that fits.
+        unit: &'static str,
+    },
     /// A newtonometer is stuck on a plateau.
     #[error(
         "plateau {} from {:.3} s to {:.3} s: f{} reads exactly {value} m/s^2 in {stuck} of {samples} samples: \
@@ -182,7 +196,7 @@ pub enum ReductionError {
     /// Sampling and rotation in step: a constant and the once-per-revolution term cannot be separated.
     #[error(
         "plateau {}: {omega:.4} rad/s sampled every {interval:.6} s shows the same phase of the revolution each time; \
-         its mean cannot be told from the once-per-revolution term", index + 1
+         its mean cannot be told from the once-per-revolution term; expected another rate, or time in another unit", index + 1
     )]
     RevolutionAliased {
         /// Index of the plateau in the schedule.
@@ -253,7 +267,7 @@ impl fmt::Display for Seen<'_> {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         let shown = self.nearest();
         if self.stretches.is_empty() {
-            return write!(out, "no steady stretch at all");
+            return write!(out, "no steady stretch at all, as where time is in another unit than s");
         }
         if shown.len() < self.stretches.len() {
             let range = format_args!("{} to {} of {}", shown.start + 1, shown.end, self.stretches.len());

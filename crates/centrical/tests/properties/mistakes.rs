@@ -82,6 +82,24 @@ fn the_sense_of_rotation_is_seen_in_the_ramps() {
     }
 }
 
+/// Time in another unit moves no mean but those of the once-per-revolution term: the pull in the ramps shows it.
+#[test]
+fn smaller_units_of_time_are_seen_in_the_ramps() {
+    for seed in 0..20 {
+        for stream in [Stream::default(), Stream { ramp: 20.0, unit_error: 0.01, ..Stream::default() }.rough()] {
+            let stream = Stream { seed: 300 + seed, ..stream };
+            for (factor, name) in [(1e3, "ms"), (1e6, "us")] {
+                let mut record = stream.record();
+                record.t.iter_mut().for_each(|t| *t *= factor);
+                let error = record.reduce(None, &stream.schedule()).expect_err("the record lasts hours");
+                let ReductionError::TimeUnit { part, unit, .. } = error else { panic!("{error}") };
+                assert!(unit == name && (part / factor - 1.0).abs() < 0.2, "{unit} {part}");
+            }
+            assert_eq!(verdict(&stream, &stream.record()), None);
+        }
+    }
+}
+
 /// A unit with errors of two percent, seen through all dirt, is not a mistake; nor is one speed without a ramp.
 #[test]
 fn good_records_are_not_blamed() {

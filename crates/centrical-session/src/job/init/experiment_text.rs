@@ -260,7 +260,7 @@ fn time(draft: &mut Draft, key: &str, file: &FileColumns, whose: &str, rate: Opt
         }
         Some(label) => {
             let how = if key == "time" { "time" } else { "time of the telemetry" };
-            draft.shown(label.guess, &format!("{key} = {}", written(label, "s")), how);
+            draft.shown(label.guess.or(label.unit_guess), &format!("{key} = {}", written(label, "s")), how);
         }
     }
 }

@@ -266,9 +266,14 @@ fn take_time(file: &mut FileColumns) {
 fn take_count(file: &mut FileColumns) {
     let is_open = file.time.as_ref().is_none_or(|time| time.guess.is_some() && time.unit.is_none());
     let Some(label) = file.time.clone().or(file.count.take()).filter(|_| is_open) else { return };
-    if steps(&file.path, &label.column).is_some_and(|steps| steps.iter().all(|step| *step == 1.0)) {
+    if counts(&file.path, &label.column) {
         file.time = Some(Label { unit: Some(SAMPLES), ..label });
     }
+}
+
+/// Whether a column of a file is whole numbers in steps of one in its first rows.
+pub(super) fn counts(path: &Path, column: &ColumnName) -> bool {
+    steps(path, column).is_some_and(|steps| steps.iter().all(|step| *step == 1.0))
 }
 
 /// Rates of turn: one is the speed if that is missing; three without a unit may be readings in g.

@@ -6,8 +6,8 @@ use centrical::reduction::SteadyStretch;
 use centrical::{OnProgress, STANDARD_GRAVITY, advance};
 use centrical_table::ColumnName;
 
-use super::column_names::Label;
-use super::file_roles::{FileColumns, Group};
+use super::column_names::{Label, SAMPLES};
+use super::file_roles::{FileColumns, Group, counts};
 use crate::error::Error;
 use crate::experiment::Folder;
 use crate::record::{Column, Columns, RecordReader, Scale, read_telemetry};
@@ -54,11 +54,12 @@ pub(super) fn sight(group: Group, progress: OnProgress) -> Result<SeenMounting, 
     let mut columns = columns_of_records(&group.records);
     if let Some(trace) = trace.as_ref().filter(|_| is_counted) {
         let samples = Seen::of(&group, &columns, &[], false, progress)?.samples;
-        let length = trace.t.last().zip(trace.t.first()).map_or(0.0, |(last, first)| last - first);
+        let length = length(&trace.t);
         if samples > 1 && length > 0.0 {
             columns.time.scale = Scale::factor(length / (samples - 1) as f64);
         }
     }
+    let length = trace.as_ref().map(|trace| length(&trace.t));
     let stretches = trace.map(|trace| SteadyStretch::all(&trace.t, &trace.omega));
     let has_clock = !is_counted && group.telemetry.as_ref().is_some_and(|telemetry| !telemetry.is_counted());
     let windows: Vec<[f64; 2]> = match &stretches {
@@ -74,6 +75,11 @@ pub(super) fn sight(group: Group, progress: OnProgress) -> Result<SeenMounting, 
         None => windows.iter().map(|window| SeenPlateau { window: *window, speed: None, readings: None }).collect(),
     };
     let seen = Seen::of(&group, &columns, &windows, false, progress)?;
+    if let Some(length) = length.filter(|_| has_clock)
+        && let Some(group) = in_unit_of_time(&group, seen.length() / length)
+    {
+        return sight(group, progress);
+    }
     if seen.sums.len() == plateaus.len() {
         for (plateau, (sum, count)) in plateaus.iter_mut().zip(&seen.sums) {
             plateau.readings = (*count > 0).then(|| sum.map(|sum| sum / *count as f64));
@@ -81,6 +87,45 @@ pub(super) fn sight(group: Group, progress: OnProgress) -> Result<SeenMounting, 
     }
     let is_counted = group.telemetry.as_ref().map_or(is_counted, FileColumns::is_counted);
     Ok(SeenMounting { group, plateaus, rate: seen.rate(), is_counted })
+}
+
+fn length(times: &[f64]) -> f64 {
+    times.last().zip(times.first()).map_or(0.0, |(last, first)| last - first)
+}
+
+/// The files with the unit of a time that the file names none of, where the record lasts so many times as long as its telemetry as another
+/// unit, or a count of samples, explains.
+fn in_unit_of_time(group: &Group, ratio: f64) -> Option<Group> {
+    const UNITS: [&str; 5] = ["ms", "us", "ns", "min", "h"];
+    /// Record and telemetry begin and end together, but for a tenth.
+    const ABOUT: f64 = 0.1;
+    let unit_of = |ratio: f64| {
+        let is_near = |unit: &&str| {
+            let factor = Dimension::Time.factor(unit).unwrap_or(f64::NAN);
+            (ratio * factor - 1.0).abs() < ABOUT
+        };
+        UNITS.into_iter().find(is_near)
+    };
+    let is_open = |file: &FileColumns| file.time.as_ref().is_some_and(|time| time.unit.is_none());
+    let take = |file: &mut FileColumns, unit| {
+        if let Some(time) = &mut file.time {
+            time.unit = Some(unit);
+            time.unit_guess =
+                Some("the file names no unit; in s the record and its telemetry would not be equally long");
+        }
+    };
+    let mut group = group.clone();
+    if group.records.iter().all(is_open) {
+        let is_count = |file: &FileColumns| file.time.as_ref().is_some_and(|time| counts(&file.path, &time.column));
+        let samples = || (ratio > 1.0 + ABOUT && group.records.iter().all(is_count)).then_some(SAMPLES);
+        if let Some(unit) = unit_of(ratio).or_else(samples) {
+            group.records.iter_mut().for_each(|file| take(file, unit));
+            return Some(group);
+        }
+    }
+    let telemetry = group.telemetry.as_mut().filter(|file| is_open(file))?;
+    take(telemetry, unit_of(1.0 / ratio)?);
+    Some(group)
 }
 
 /// What a pass over a record collects.
@@ -139,8 +184,12 @@ impl Seen {
         }
     }
 
+    fn length(&self) -> f64 {
+        self.first.map_or(0.0, |first| self.last - first)
+    }
+
     fn rate(&self) -> Option<f64> {
-        let time = self.last - self.first?;
+        let time = self.length();
         (time > 0.0).then(|| (self.samples - 1) as f64 / time)
     }
 }

@@ -1,5 +1,5 @@
-//! The sense of rotation, from the ramps: plateaus hardly show it, since the centripetal part goes with the square of the
-//! speed. While the speed changes, a proof mass at the radius `R` has the tangential acceleration `dOmega/dt R`.
+//! The sense of rotation and the unit of time, from the ramps: plateaus hardly show them, since the centripetal part goes with the
+//! square of the speed. While the speed changes, a proof mass at the radius `R` has the tangential acceleration `dOmega/dt R`.
 
 use std::ops::Range;
 
@@ -10,11 +10,12 @@ use crate::reduction::error::ReductionError;
 use crate::reduction::plateau::ScheduledPlateau;
 use crate::reduction::survey::Blocks;
 
-/// Refuses a record whose ramps fit the other sense of rotation decisively better.
+/// Refuses a record whose ramps fit the other sense of rotation, or a smaller unit of time, decisively better.
 ///
 /// For a ramp, `S` is the sum of squares of the readings across the line from one plateau to the next, less the
 /// tangential part as expected or with the other sign. A ramp counts as two independent readings, the two directions
-/// across the way, however many samples it has: then the odds of the two senses are `S- / S+`.
+/// across the way, however many samples it has: then the odds of the two senses are `S- / S+`. Time in ms that is taken for s makes the
+/// tangential part a thousand times as large as expected, and is refused by the same odds.
 pub(super) fn check(
     blocks: &Blocks,
     schedule: &[ScheduledPlateau],
@@ -24,11 +25,19 @@ pub(super) fn check(
     let ramps: Vec<Ramp> =
         (1..cores.len()).filter_map(|k| Ramp::seen(blocks, schedule, cores, k, &tangential_z)).collect();
     let log_odds: f64 = ramps.iter().map(|ramp| (ramp.off_expected / ramp.off_reversed).ln()).sum();
-    if log_odds < -ODDS.ln() {
-        return Ok(());
-    }
     let (product, square) = ramps.iter().fold((0.0, 0.0), |(p, s), ramp| (p + ramp.product, s + ramp.square));
-    Err(ReductionError::Rotation { ramps: ramps.len(), part: product / square })
+    let (ramps_seen, part) = (ramps.len(), product / square);
+    if log_odds >= -ODDS.ln() {
+        return Err(ReductionError::Rotation { ramps: ramps_seen, part });
+    }
+    // Readings that are not linear bend the way as a tangential part does, and as much as a thousand of it only in ramps of hours.
+    for (unit, factor) in [("ms", 1e3), ("us", 1e6), ("ns", 1e9)] {
+        let log_odds: f64 = ramps.iter().map(|ramp| (ramp.off(factor) / ramp.off_expected).ln()).sum();
+        if log_odds < ODDS.ln() {
+            return Err(ReductionError::TimeUnit { ramps: ramps_seen, part, unit });
+        }
+    }
+    Ok(())
 }
 
 /// Nominal reading per angular acceleration about the third arm axis [m]: of the plumb line `up` and the pull
@@ -50,6 +59,11 @@ struct Ramp {
 }
 
 impl Ramp {
+    /// Sum of squares less so many times the expected tangential part: time runs so many times as fast as it is taken to.
+    fn off(&self, factor: f64) -> f64 {
+        self.off_expected + 2.0 * (1.0 - factor) * self.product + (factor * factor - 1.0) * self.square
+    }
+
     /// The ramp before plateau `k`; `None` if the speed does not change or changes its sign.
     fn seen(
         blocks: &Blocks,
