@@ -80,6 +80,7 @@ def unaligned_copy(array):
 
 def test_what_is_masked_is_missing(example, arrays):
     records, telemetry = arrays
+    example = (example / "experiment.toml").read_text().replace("[columns]\n", '[columns]\nmissing_readings = "left out"\n')
     t, f = records[2]
     holes = np.zeros(f.shape, bool)
     holes[500:520, 1] = True
@@ -119,6 +120,8 @@ def test_misuse(example, arrays, tmp_path):
     refused(ct.InputError, "mounting 5: record too short", example, empty)
     nan = dict(records) | {2: (np.where(np.arange(len(t)) == 700, np.nan, t), f)}
     refused(ct.InputError, "mounting 2: sample 701: found time NaN", example, nan)
+    missing = dict(records) | {2: (t, np.where(np.arange(len(t))[:, None] == 700, np.nan, f))}
+    refused(ct.InputError, "found no reading f1 in sample 701, expected a number in m/s.2, or missing_readings", example, missing)
     infinite = f.copy()
     infinite[9, 1] = np.inf
     refused(ValueError, r"records\[1\], row 10: found inf, expected a number", example, {1: (t, infinite)})

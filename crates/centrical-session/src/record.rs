@@ -12,7 +12,7 @@ mod sample_cache;
 mod writer;
 
 pub(crate) use self::columns::{
-    CheckedTable, Form as TableForm, NEWTONOMETER_RECORD, PULSES, RECORD, StatedUnits, TELEMETRY, TimeSpan,
+    CheckedTable, Form as TableForm, LEFT_OUT, NEWTONOMETER_RECORD, PULSES, RECORD, StatedUnits, TELEMETRY, TimeSpan,
     named_columns,
 };
 pub use self::columns::{Column, Columns, MissingReadings, Scale};

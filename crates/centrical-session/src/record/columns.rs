@@ -19,6 +19,9 @@ pub(crate) const NEWTONOMETER_RECORD: &str = "the record of a newtonometer";
 pub(crate) const TELEMETRY: &str = "telemetry";
 pub(crate) const PULSES: &str = "times of pulses";
 
+/// How rows that lack a reading are left out, for messages.
+pub(crate) const LEFT_OUT: &str = "missing_readings = \"left out\" under [columns]";
+
 /// The columns of records and telemetry.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Columns {
@@ -182,7 +185,7 @@ pub(crate) fn named_columns(
 
 impl MissingReadings {
     /// Leaves out the rows that lack a reading, if so stated; the first column is time.
-    pub(super) fn leave_out(self, rows: &mut Rows) {
+    pub(crate) fn leave_out(self, rows: &mut Rows) {
         self.leave_out_stamped(rows, &mut Stamps::default());
     }
 
@@ -211,7 +214,7 @@ impl MissingReadings {
                     && (found == "no value" || is_missing(found.trim_matches('"')))
                     && place.column() != Some(time) =>
             {
-                let expected = format!("{expected}, or missing_readings = \"left out\" under [columns]");
+                let expected = format!("{expected}, or {LEFT_OUT}");
                 Content { file, place, found, expected }
             }
             other => other,

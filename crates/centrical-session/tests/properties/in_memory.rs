@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use centrical_session::{
-    Error, ErrorKind, Folder, Method, PlateauRow, PlateauTable, Recorded, Session, TableFormat, calibrate,
+    Error, ErrorKind, Folder, Method, PlateauRow, PlateauTable, Record, Recorded, Session, TableFormat, calibrate,
     calibrate_reduced, reduce, reduce_recorded, unwatched, write_reduced,
 };
 use centrical_table::Extent;
@@ -111,6 +111,10 @@ fn what_is_no_record_is_refused() {
     assert!(unequal.contains("mounting 3: columns of different lengths"), "{unequal}");
     let backwards = refused(&|recorded| recorded[0].record.t[700] = 1.0);
     assert!(backwards.contains("mounting 1: sample 701: found time 1 s"), "{backwards}");
+    let missing = refused(&|recorded| recorded[0].record.f_z[1][500] = f64::NAN);
+    let expected = "[[mounting]] 1, record: found no reading f2 in sample 501, expected a number in m/s^2, or missing_readings = \"left out\" \
+                    under [columns]";
+    assert!(missing.contains(expected), "{missing}");
     let empty = refused(&|recorded| recorded[5] = Recorded::default());
     assert!(empty.contains("mounting 6: record too short"), "{empty}");
     // Nanoseconds in columns of seconds.
@@ -122,6 +126,20 @@ fn what_is_no_record_is_refused() {
     years("record", &|recorded| recorded.record.t.iter_mut().for_each(|t| *t *= 1e9));
     years("telemetry", &|recorded| recorded.telemetry.as_mut().unwrap().t.iter_mut().for_each(|t| *t *= 1e9));
     years("pulses", &|recorded| recorded.pulses = Some(vec![0.0, 1e9]));
+}
+
+/// Samples that lack a reading are left out where the session says so, as rows of a file.
+#[test]
+fn missing_readings_are_lost_samples() {
+    let text = fs::read_to_string(&Session::read(&example()).unwrap().file).unwrap();
+    let text = text.replace("[columns]\n", "[columns]\nmissing_readings = \"left out\"\n");
+    let session = Session::parse(&text, Folder::at(&example())).unwrap();
+    let (mut lacking, mut lost) = (recorded(&session), recorded(&session));
+    lacking[2].record.f_z[1][700..720].fill(f64::NAN);
+    let Record { t, f_z } = &mut lost[2].record;
+    f_z.iter_mut().chain([t]).for_each(|column| drop(column.drain(700..720)));
+    let plateaus = |recorded| format!("{:?}", reduce_recorded(&session, recorded, &unwatched).unwrap().1.plateaus);
+    assert_eq!(plateaus(lacking), plateaus(lost));
 }
 
 /// A reduced session, its table as columns: the plateaus of its own file.

@@ -1,5 +1,7 @@
 //! Records that are in memory: the same reduction, without files.
 
+use std::mem::take;
+
 use centrical::reduction::{PulseTrain, Record, ReducedMounting, SpeedTrace, Survey};
 use centrical::{OnProgress, advance};
 use rayon::prelude::*;
@@ -7,7 +9,7 @@ use rayon::prelude::*;
 use super::mounting::{OfRecord, ShownSpeeds, located};
 use crate::error::{Error, Place};
 use crate::experiment::{Session, TomlPath};
-use crate::record::{Column, TimeSpan};
+use crate::record::{Column, LEFT_OUT, MissingReadings, TimeSpan};
 
 /// What was recorded of one mounting, in the units of the session's columns.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -85,5 +87,31 @@ fn in_si(session: &Session, number: usize, recorded: Recorded) -> Result<Recorde
     if let Some(times) = &mut pulses {
         times_in_si("pulses", &columns.pulse, times)?;
     }
+    leave_out_missing(session, number, &mut record)?;
     Ok(Recorded { record, telemetry, pulses })
+}
+
+/// Leaves out the samples that lack a reading, or refuses the record, as that of a file.
+fn leave_out_missing(session: &Session, number: usize, record: &mut Record) -> Result<(), Error> {
+    let missing = |j: usize| record.f_z[j].iter().position(|f| f.is_nan()).map(|sample| (sample, j));
+    // Columns of different lengths are refused later.
+    let Some((sample, j)) =
+        (0..3).filter_map(missing).min().filter(|_| record.f_z.iter().all(|f| f.len() == record.t.len()))
+    else {
+        return Ok(());
+    };
+    let columns = &session.columns;
+    if columns.missing_readings == MissingReadings::Refused {
+        let place = TomlPath::entry(&session.file, "mounting", number).key("record");
+        let found = format!("no reading f{} in sample {}", j + 1, sample + 1);
+        let expected = format!("a number in {}, or {LEFT_OUT}", columns.f[j].unit);
+        return Err(Error::content(&session.file, place, found, expected));
+    }
+    let [f1, f2, f3] = &mut record.f_z;
+    let mut rows = vec![take(&mut record.t), take(f1), take(f2), take(f3)];
+    columns.missing_readings.leave_out(&mut rows);
+    for (column, whole) in std::iter::once(&mut record.t).chain(&mut record.f_z).zip(rows) {
+        *column = whole;
+    }
+    Ok(())
 }
