@@ -12,8 +12,8 @@ mod rests_on;
 mod switch_on;
 mod tables;
 
-pub(crate) use self::certificate::method_text;
 pub use self::certificate::{Issuer, certificate};
+pub(crate) use self::certificate::{covered, method_text};
 pub(crate) use self::conformity::{judged_in_words, rule};
 pub use self::content::{
     Align, Attachment, Block, Column, Document, Fact, Layer, Margins, Opening, Picture, Row, Section, Table, TableKind,
@@ -26,6 +26,8 @@ pub use self::objection::objection;
 pub(crate) use self::objection::rival;
 pub use self::report::report;
 pub(crate) use self::report::speeds;
-pub(crate) use self::rests_on::{counts_as_exact, presuppositions, rests_on_sentence};
+pub(crate) use self::rests_on::{
+    condition_of_conformity, counts_as_exact, presuppositions, rests_on_sentence, uncertainty_holds,
+};
 pub(crate) use self::switch_on::switch_on_sentence;
 pub(crate) use self::tables::serial;

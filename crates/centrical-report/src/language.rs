@@ -102,6 +102,11 @@ impl Language {
         self.number(&unsigned_zero(significant(rounded, digits, i32::MIN..i32::MAX)))
     }
 
+    /// A number above zero to two digits: in powers of ten outside `1e-3` to `1e5`.
+    pub(crate) fn two_digits(self, value: f64) -> String {
+        if (1e-3..1e5).contains(&value) { self.significant(value, 2) } else { self.with_power(scientific(value, 2)) }
+    }
+
     /// `1.5·10⁻⁵`, with the digits that the number has.
     pub(crate) fn scientific(self, value: f64) -> String {
         self.with_power(shortest(value))
@@ -170,6 +175,10 @@ mod tests {
         assert_eq!([9.99e-4, 1.3e-45].map(|p| English.probability(p)), ["1.0·10⁻³", "1.3·10⁻⁴⁵"]);
         assert_eq!([1234.5, 10_873.0].map(|x| English.significant(x, 2)), ["1200", "11000"]);
         assert_eq!(Russian.significant(0.012_345, 3), "0,0123");
+        assert_eq!(
+            [2.44e-5, 0.033, 39_000.0, 1.5e7].map(|x| English.two_digits(x)),
+            ["2.4·10⁻⁵", "0.033", "39000", "1.5·10⁷"]
+        );
         assert_eq!((English.unit("ug/g^2"), Russian.unit("ug/g^2")), ("µg/g²".to_owned(), "мкg/g²".to_owned()));
         assert_eq!(["2026-10-05", "October"].map(|day| Russian.written_date(day)), ["05.10.2026", "October"]);
         assert_eq!((Russian.fixed(-0.001, 2), Russian.fixed(-0.01, 2)), ("0,00".to_owned(), "−0,01".to_owned()));

@@ -32,7 +32,7 @@ pub use render::{
 };
 pub use terminal::{
     AlarmKind, Emphasis, Line, Screen, alarm_text, assessment_text, chart_text, comparison_text, compensation_text,
-    frozen_text, history_list_text, monte_carlo_text, noise_table, noise_warnings, objections_text, observation_text,
-    plan_text, reduction_text, result_text, selection_table, states_text, station_history_text, unit_history_text,
-    unit_text, units_history_text, watch_table,
+    exact_text, frozen_text, history_list_text, monte_carlo_text, noise_table, noise_warnings, objections_text,
+    observation_text, plan_text, reduction_text, result_text, selection_table, states_text, station_history_text,
+    unit_history_text, unit_text, units_history_text, watch_table,
 };

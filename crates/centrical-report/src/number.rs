@@ -10,6 +10,16 @@ pub(crate) fn converted(value: f64) -> f64 {
     format!("{value:.9e}").parse().unwrap_or(value)
 }
 
+/// A positive number cut to `digits` significant digits, without zeros at its end: what holds up to it holds up to this one.
+pub(crate) fn rounded_down(value: f64, digits: usize) -> String {
+    let value = converted(value);
+    let (shown, power) = scientific(value, digits);
+    let rounded: f64 = format!("{shown}e{power}").parse().unwrap_or(value);
+    let step: f64 = format!("1e{}", power + 1 - digits as i32).parse().unwrap_or(0.0);
+    let cut = if rounded > value { rounded - step } else { rounded };
+    converted(cut).to_string()
+}
+
 /// Digits and power of ten of a number rounded to `digits` significant digits: 0.0996 to two is `1.0`, -1.
 pub(crate) fn scientific(value: f64, digits: usize) -> (String, i32) {
     parts(format!("{value:.*e}", digits.saturating_sub(1)))
@@ -127,7 +137,7 @@ pub(crate) fn raised(symbol: char) -> char {
 
 #[cfg(test)]
 mod tests {
-    use super::{converted, counted, grouped, significant, two_digits, with_uncertainty};
+    use super::{converted, counted, grouped, rounded_down, significant, two_digits, with_uncertainty};
 
     #[test]
     fn two_digits_of_the_uncertainty() {
@@ -158,6 +168,13 @@ mod tests {
     fn a_conversion_adds_no_digits() {
         assert_eq!([1e6 * 2e-7, 3e-3 * 9.80665 / 9.80665e-6].map(converted), [0.2, 3000.0]);
         assert_eq!(converted(1e6 * 1.234_567_8e-5), 12.345_678);
+    }
+
+    #[test]
+    fn a_range_is_cut_not_rounded() {
+        let cut = [525.985, 199.999, 1e3, 0.098_76, 9.8066].map(|value| rounded_down(value, 3));
+        assert_eq!(cut, ["525", "199", "1000", "0.0987", "9.8"]);
+        assert_eq!([200.0, 411.123_456].map(|value| rounded_down(value * (1.0 - 1e-15), 5)), ["200", "411.12"]);
     }
 
     #[test]

@@ -36,5 +36,5 @@ pub use self::plan::plan_text;
 pub(crate) use self::screen::Part;
 pub use self::screen::{Emphasis, Line, Screen};
 pub(crate) use self::table::{Align, Table};
-pub use self::verdict::{objections_text, result_text, unit_text};
+pub use self::verdict::{exact_text, objections_text, result_text, unit_text};
 pub use self::watch::{AlarmKind, alarm_text, frozen_text, states_text, watch_table};

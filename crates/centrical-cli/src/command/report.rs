@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use centrical_report::{
-    DocumentRequest, Emphasis, Screen, UnitStatement, certificates_in, objections_text, read_issuer, result_text,
-    unit_text, write_all_documents, write_documents,
+    DocumentRequest, Emphasis, Screen, UnitStatement, certificates_in, exact_text, objections_text, read_issuer,
+    result_text, unit_text, write_all_documents, write_documents,
 };
 use centrical_session::{Axes, CalibrationResult, DocumentsReport, Error, Place};
 
@@ -138,6 +138,9 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     }
     let documents = write_documents(&request)?;
     remark_other_days(documents.other_days.as_deref());
+    if request.pdf.is_some() || request.dcc.is_some() {
+        remark(&exact_text(&documents.result));
+    }
     let (result, unit) = (documents.result, documents.unit);
     let objections = result.objections();
     let is_within = is_within_limits(unit.as_ref());

@@ -66,8 +66,13 @@ fn readings_are_explained() {
     let margin = centrical_compensate::Compensation::new(&terms, range).unwrap().certificate().margin;
     let [range, farthest] = [range, margin * range].map(|f| f / centrical::STANDARD_GRAVITY);
     let said = format!(
-        "range {range:.6} g on each axis; the inverse is unique there, and could be asked for up to {farthest:.0} g"
+        "range {} g on each axis; the inverse is unique there, and could be asked for up to {:.0} g",
+        (range * 100.0).floor() / 100.0,
+        farthest.floor()
     );
+    // What is said to be possible is taken.
+    let asked = format!("{:.0} g", farthest.floor());
+    assert!(compensate(&copy, &["asked.csv", "--range", &asked]).status.success(), "{asked}");
     assert!(text(&output).contains(&said), "{said}: {}", text(&output));
     assert!(text(&output).contains("f.csv, specific forces to 9 decimals of a m/s^2"), "{}", text(&output));
     let before = columns(&fs::read_to_string(copy.session().join("records/m01.csv")).unwrap());

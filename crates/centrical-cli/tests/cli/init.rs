@@ -71,6 +71,21 @@ fn a_filled_draft_calibrates_to_the_same_numbers() {
         assert_eq!(name, other);
         assert!((value - again).abs() <= 1e-6 * u, "{name}: {value} and {again}, u {u}");
     }
+
+    // With the lines that the draft has as comments nothing counts as exact.
+    copy.edit("experiment.toml", |text| {
+        let (before, stated) = text.split_once("# [uncertainty]\n").unwrap();
+        let (lines, after) = stated.split_once("\n\n").unwrap();
+        assert_eq!(lines.matches("# ").count(), 8, "{lines}");
+        format!("{before}[uncertainty]\n{}\n\n{after}", lines.replace("# ", ""))
+    });
+    let output = copy.calibrate(&[]);
+    let said = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert!(
+        said.contains("no input quantity is treated as exact"),
+        "{said}{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
 }
 
 #[test]

@@ -289,6 +289,16 @@ fn coverage_factors_of_finite_degrees_of_freedom() {
     let arguments = ["report", "result.json", "--html", "k.html", "--dcc", "k.xml", "--laboratory"];
     let run = copy.run(&[&arguments[..], &[laboratory.to_str().unwrap()]].concat());
     assert_eq!(run.status.code(), Some(0), "{}", String::from_utf8_lossy(&run.stderr));
+    // A compensated reading takes the fewest degrees of the coefficients of its newtonometer: 2.28 of 2.00, less by its own noise.
+    let expanded = |file: &str| {
+        let text = fs::read_to_string(copy.out().join(file)).unwrap();
+        let column = text.split("centrical_expandedUncertainty").nth(1).unwrap();
+        let values = column.split("<si:valueXMLList>").nth(1).unwrap().split_once('<').unwrap().0;
+        values.split(' ').map(|value| value.parse::<f64>().unwrap()).collect::<Vec<_>>()
+    };
+    for (few, many) in expanded("k.xml").iter().zip(expanded("certificate.xml")) {
+        assert!((few / many - 2.28 / 2.0).abs() < 0.003, "{few} {many}");
+    }
     let page = fs::read_to_string(copy.out().join("k.html")).unwrap();
     // 0.0020027 mg times 2.28, the factor of ten degrees in EA-4/02, annex E.
     assert!(page.contains("<td>−3.9524 ± 0.0046</td><td>mg</td><td>2.28 (10)</td>"), "k of Student's distribution");
@@ -323,6 +333,14 @@ fn a_unit_in_counts() {
     assert!(header.contains("#define CENTRICAL_RANGE 2.4516625e3"), "{header}");
     assert!(header.contains("in counts, by its nominal scale (1e0, 1.01e0, 9.9e-1) per m/s^2"), "{header}");
     assert!(header.contains("int centrical_compensate_raw("));
+    // What the numbers reach, and which result they are of.
+    assert!(header.contains("#define CENTRICAL_CALIBRATED_RANGE ") && header.contains("an extrapolation"), "{header}");
+    assert!(header.contains(" * Calibrated range: ") && header.contains(" * Certified range: 250 g, "), "{header}");
+    assert!(
+        header.contains(" * Expanded uncertainty (95.45 %) at the calibrated range along axes 1, 2, 3: "),
+        "{header}"
+    );
+    assert!(header.contains(" * From result.json, SHA-256 "), "{header}");
 }
 
 /// Beside a result of another data sheet a result before an adjustment stands relative to the same nominal values: the unit has not changed.
@@ -402,4 +420,50 @@ fn letters_without_a_glyph_are_refused() {
     assert!(run.status.code() == Some(2) && message.contains(said), "{message}");
     assert!(!copy.out().join("l").exists());
     assert_eq!(report("--dcc").status.code(), Some(0));
+}
+
+/// Quantities without a stated uncertainty: the documents name them and claim no evaluation by the GUM, and `report` remarks them.
+#[test]
+fn what_counts_as_exact_is_said() {
+    let laboratory = example().join("laboratory.toml");
+    let report = |copy: &Copy| {
+        assert_eq!(copy.calibrate(&[]).status.code(), Some(0));
+        let run = copy.run(&[
+            "report",
+            "result.json",
+            "--html",
+            "h",
+            "--dcc",
+            "d",
+            "--laboratory",
+            laboratory.to_str().unwrap(),
+        ]);
+        let read = |file: &str| fs::read_to_string(copy.out().join(file)).unwrap();
+        (String::from_utf8_lossy(&run.stderr).into_owned(), read("h"), read("d"))
+    };
+    let copy = Copy::new();
+    let (remark, html, dcc) = report(&copy);
+    assert!(remark.contains("COUNT AS EXACT  gravity, latitude, radius"), "{remark}");
+    for document in [&html, &dcc] {
+        assert!(document.contains("taken as exact and contribute nothing to it: gravity, latitude"), "{document}");
+        assert!(document.contains("The statement presupposes that these quantities"), "{document}");
+    }
+    assert!(!dcc.contains("in accordance with JCGM 100"), "{dcc}");
+    // 7.8.6.2 a: to which results the statement applies.
+    assert!(dcc.contains("df₁: −0.038760 ± 0.000039 m/s²; limits −0.15 … 0.15 m/s²"), "{dcc}");
+
+    copy.edit("experiment.toml", |text| {
+        format!(
+            "{text}\n[uncertainty]\ngravity = 1e-6\nlatitude = 1e-6\nradius = 1e-8\nspeed_scale = 1e-9\nrest_angle = 1e-9\n\
+             proof_masses = 1e-9\nattitude = 1e-9\n"
+        )
+    });
+    let (remark, html, dcc) = report(&copy);
+    assert!(!remark.contains("COUNT AS EXACT"), "{remark}");
+    for document in [&html, &dcc] {
+        assert!(
+            document.contains("in accordance with JCGM 100 (GUM) and EA-4/02. No input quantity is treated as exact.")
+        );
+        assert!(!document.contains("The statement presupposes"));
+    }
 }

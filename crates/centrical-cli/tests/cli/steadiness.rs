@@ -29,7 +29,7 @@ fn calibrated(truth: &str, seed: &str) -> Calibrated {
     let output = copy.run(&["calibrate", "session"]);
     let said = String::from_utf8_lossy(&output.stdout).into_owned();
     let sections =
-        [("en", "<h2>Steadiness</h2>"), ("ru", "<h2>Постоянство показаний</h2>")].map(|(language, title)| {
+        [("en", "<h2>Steadiness</h2>"), ("ru", "<h2>Стабильность показаний</h2>")].map(|(language, title)| {
             let made = copy.run(&["report", "result.json", "--html", "report.html", "--language", language]);
             // 1: written, but the result is not acceptable.
             assert!(matches!(made.status.code(), Some(0 | 1)), "{}", String::from_utf8_lossy(&made.stderr));
@@ -58,9 +58,9 @@ fn a_steady_session_is_said_to_be_steady() {
     assert!(drift.repeats.iter().all(|repeat| repeat.probability > 1e-5));
     assert_eq!(said.matches("no drift seen").count(), 2, "{said}");
     assert!(said.contains("plateaus run again: 12") && said.contains("no difference seen"), "{said}");
-    assert_eq!((english.matches("no drift seen").count(), russian.matches("ухода не видно").count()), (2, 2));
+    assert_eq!((english.matches("no drift seen").count(), russian.matches("уход не обнаружен").count()), (2, 2));
     assert!(english.contains("<td>12; farthest apart: ") && english.contains("no difference seen"), "{english}");
-    assert!(english.contains("they agree") && russian.contains("они согласны"), "{english}");
+    assert!(english.contains("they agree") && russian.contains("результаты согласуются"), "{english}");
     // The numbers are those of the terminal, as each language writes them.
     let slopes = said.split_once("mean: ").unwrap().1.split_once(" ug/min").unwrap().0;
     for slope in slopes.split(", ") {

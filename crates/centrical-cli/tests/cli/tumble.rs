@@ -240,7 +240,7 @@ fn known_attitudes_show_the_case() {
 fn a_certificate_of_rests_names_no_centrifuge() {
     let copy = Copy::new();
     let record = example("record.csv");
-    let tumble = ["tumble", &record, "--gravity", "9.81523 m/s^2", "--out", "tumbled"];
+    let tumble = ["tumble", &record, "--gravity", "9.81523 m/s^2", "--serial", "0001", "--out", "tumbled"];
     let table = example("attitudes.csv");
     let known = ["--attitudes", &table, "--attitude-uncertainty", "1 mrad"];
     let laboratory = format!("{}/../../examples/ta-200/laboratory.toml", env!("CARGO_MANIFEST_DIR"));
@@ -324,6 +324,31 @@ fn counts_need_no_data_sheet() {
         let own = in_counts["output"]["scale"][axis].as_f64().unwrap() * scale(&in_counts);
         assert!((own / (5000.0 * scale(&in_si)) - 1.0).abs() < 2e-5, "{own}");
     }
+
+    // Biases and scale errors are relative to what the rests showed: no statement on them, no error before compensation.
+    let laboratory = format!("{}/../../examples/ta-200/laboratory.toml", env!("CARGO_MANIFEST_DIR"));
+    let tumble = ["tumble", "counts.csv", "--unit", "counts", "--gravity", "9.81523", "--out"];
+    let certificate = |folder: &str| {
+        let (result, html) = (format!("{folder}/result.json"), format!("{folder}.html"));
+        let file = format!("{folder}.xml");
+        let run = copy.run(&["report", &result, "--laboratory", &laboratory, "--html", &html, "--dcc", &file]);
+        (run.status.code(), said(&run), fs::read_to_string(copy.out().join(file)).unwrap_or_default())
+    };
+    copy.run(&[&tumble[..], &["named", "--serial", "7"]].concat());
+    let (code, said_of_unit, digital) = certificate("named");
+    assert!(code == Some(1) && said_of_unit.contains("conformity not stated"), "{said_of_unit}");
+    assert!(!digital.contains("<dcc:conformity>") && !digital.contains("centrical_asReceived"), "{digital}");
+    let page = fs::read_to_string(copy.out().join("named.html")).unwrap();
+    assert!(page.contains("found the nominal values itself") && !page.contains("Before compensation"));
+
+    // A certificate identifies its item (ISO/IEC 17025, 7.8.2.1 g).
+    copy.run(&[&tumble[..], &["nameless"]].concat());
+    let (code, refusal, digital) = certificate("nameless");
+    assert_eq!((code, digital.as_str()), (Some(2), ""), "{refusal}");
+    assert!(
+        refusal.contains("found a unit without a serial number, expected the serial number under [unit]"),
+        "{refusal}"
+    );
 }
 
 #[test]

@@ -164,7 +164,7 @@ fn the_report_tells_the_residual_error() {
         "Before compensation",
         "After compensation",
         "After, less the speed error of each plateau",
-        "Uncertainty of compensation, k = 2",
+        "Expanded uncertainty of compensation, U",
     ]
     .map(|name| row(&clean.page, name));
     let true_after = rms(|p| p.after);

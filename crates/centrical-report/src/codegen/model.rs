@@ -10,6 +10,8 @@ pub(super) struct Model<'a> {
     pub heading: &'a [String],
     /// Of the terms of the compensation.
     pub names: &'a [String],
+    /// Largest reading of the calibration [m/s^2].
+    pub calibrated: f64,
     pub output: Option<&'a OutputSummary>,
     pub compensation: &'a Compensation<Vec<Term>>,
 }
@@ -26,6 +28,7 @@ impl Model<'_> {
         let mut text = self
             .sections(template)
             .replace("@heading@", &self.heading(language.comment()))
+            .replace("@calibrated@", &language.number(self.calibrated))
             .replace("@range@", &language.number(self.range()))
             .replace("@start_region@", &language.number(centrical_compensate::START_REGION))
             .replace("@edge@", &language.number(1.0 + 8.0 * language.epsilon()))

@@ -4,9 +4,10 @@ use centrical_session::{Address, CalibrationResult, Contact, Laboratory};
 
 use super::xml::Xml;
 use crate::document::{
-    Issuer, counts_as_exact, drift_facts, objection, presuppositions, rule, serial, switch_on_sentence,
+    Issuer, condition_of_conformity, drift_facts, judged_in_words, objection, presuppositions, rule, serial,
+    switch_on_sentence, uncertainty_holds,
 };
-use crate::evaluation::UnitVerdict;
+use crate::evaluation::{UnitStatement, UnitVerdict};
 use crate::language::Language;
 
 pub(super) fn data(xml: &mut Xml, result: &CalibrationResult, issuer: &Issuer, language: Language) {
@@ -134,11 +135,7 @@ fn statements(xml: &mut Xml, result: &CalibrationResult, issuer: &Issuer, langua
         if let Some(unit) = &issuer.unit {
             xml.kind("dcc:statement", "basic_conformity", |xml| {
                 xml.leaf("dcc:norm", &unit.specification);
-                xml.content(
-                    "dcc:declaration",
-                    &format!("{}: {}", messages.decision_rule, rule(unit.rule, language)),
-                    language,
-                );
+                xml.content("dcc:declaration", &declaration(result, unit, language), language);
                 match unit.verdict() {
                     UnitVerdict::Within => xml.leaf("dcc:conformity", "pass"),
                     UnitVerdict::Outside => xml.leaf("dcc:conformity", "fail"),
@@ -147,8 +144,7 @@ fn statements(xml: &mut Xml, result: &CalibrationResult, issuer: &Issuer, langua
                 }
             });
         }
-        let exact = format!("{}: {}", messages.counts_as_exact, counts_as_exact(result, language));
-        statement(xml, "7.8.4.1 a", &exact);
+        statement(xml, "7.8.4.1 a", &uncertainty_holds(result, language));
         statement(xml, "7.8.4.1 a", &presuppositions(result, language));
         for (name, text) in drift_facts(result, language) {
             statement(xml, "7.8.2.1 m", &format!("{name}: {text}"));
@@ -159,4 +155,13 @@ fn statements(xml: &mut Xml, result: &CalibrationResult, issuer: &Issuer, langua
             statement(xml, "7.8.4.1 a", &text);
         }
     });
+}
+
+/// The rule, the limits judged with their values (7.8.6.2 a), and the condition on which the statement holds.
+fn declaration(result: &CalibrationResult, unit: &UnitStatement, language: Language) -> String {
+    let messages = language.messages();
+    let judged: Vec<String> = unit.judged.iter().map(|judged| judged_in_words(judged, language)).collect();
+    let condition = condition_of_conformity(result, language).map(|condition| format!(" {condition}"));
+    let rule = rule(unit.rule, language);
+    format!("{}: {rule}. {}.{}", messages.decision_rule, judged.join(". "), condition.unwrap_or_default())
 }

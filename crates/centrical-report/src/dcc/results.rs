@@ -9,10 +9,8 @@ use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 use super::administrative::{identification, software};
 use super::xml::Xml;
-use crate::document::method_text;
-use crate::evaluation::{
-    COVERAGE_PROBABILITY, Expanded, ReadingError, equation, expanded, expanded_of_normal, reading_errors,
-};
+use crate::document::{covered, method_text, uncertainty_holds};
+use crate::evaluation::{COVERAGE_PROBABILITY, Expanded, ReadingError, equation, expanded, reading_errors};
 use crate::language::Language;
 use crate::number::converted;
 
@@ -49,13 +47,17 @@ fn methods(xml: &mut Xml, result: &CalibrationResult, laboratory: &Laboratory, l
         xml.element("dcc:usedMethod", |xml| {
             xml.content("dcc:name", messages.method, language);
             let deviations = laboratory.method.deviations.as_deref().unwrap_or(messages.none);
-            let text = format!("{} {}: {deviations}.", method_text(&result.model, language), messages.deviations);
+            let covered = covered(result, language).into_iter().filter(|(_, text)| !text.is_empty());
+            let covered: String = covered.map(|(name, text)| format!(" {name}: {text}.")).collect();
+            let text =
+                format!("{} {}: {deviations}.{covered}", method_text(&result.model, language), messages.deviations);
             xml.content("dcc:description", &text, language);
             xml.optional("dcc:reference", laboratory.method.procedure.as_deref());
         });
         xml.kind("dcc:usedMethod", "basic_methodMeasurementUncertainty", |xml| {
             xml.content("dcc:name", messages.uncertainty, language);
-            xml.content("dcc:description", messages.uncertainty_statement, language);
+            let text = format!("{} {}", messages.uncertainty_statement, uncertainty_holds(result, language));
+            xml.content("dcc:description", &text, language);
             xml.leaf("dcc:norm", "JCGM 100:2008");
         });
     });
@@ -158,7 +160,8 @@ fn parameters(xml: &mut Xml, result: &CalibrationResult, units: &[UnitOfMeasure]
     let messages = language.messages();
     xml.kind("dcc:result", "centrical_parameters", |xml| {
         xml.content("dcc:name", messages.parameters, language);
-        xml.content("dcc:description", &equation(result), language);
+        let text = format!("{}. {}", equation(result), messages.axes_defined);
+        xml.content("dcc:description", &text, language);
         xml.element("dcc:data", |xml| {
             xml.element("dcc:list", |xml| {
                 for (parameter, unit) in result.parameters.iter().zip(units) {
@@ -328,10 +331,12 @@ fn errors(xml: &mut Xml, result: &CalibrationResult, language: Language) {
                         });
                     };
                     column("basic_referenceValue centrical_specificForce", messages.specific_force, |e| e.force);
-                    column("basic_measurementError centrical_asReceived", messages.before, |e| e.before);
+                    if !result.model.nominal_found {
+                        column("basic_measurementError centrical_asReceived", messages.before, |e| e.before);
+                    }
                     column("basic_measurementError centrical_compensated", messages.after, |e| e.after);
                     column("centrical_expandedUncertainty", messages.compensation_uncertainty, |e| {
-                        e.prediction.map(expanded_of_normal)
+                        e.expanded_prediction
                     });
                 });
             }

@@ -1,7 +1,9 @@
 //! The calibration certificate on paper: the items of ISO/IEC 17025:2017, 7.8.2 and 7.8.4, in their order.
 
+use std::f64::consts::PI;
 use std::path::PathBuf;
 
+use centrical::STANDARD_GRAVITY;
 use centrical_session::{
     Address, CalibrationResult, Condition, Contact, Date, Laboratory, ModelSummary, PositionSummary, UnitHistoryReport,
     customary,
@@ -13,7 +15,7 @@ use super::content::{Align, Block, Document, Margins, Opening, Picture, Section,
 use super::drift::drift;
 use super::objection::{objection, refusal};
 use super::reading_error::{error_note, error_table};
-use super::rests_on::{counts_as_exact, presuppositions};
+use super::rests_on::{condition_of_conformity, presuppositions, uncertainty_holds};
 use super::switch_on::switch_on;
 use super::tables::{by_group, nominal_output, of_arm, rows_by_group, serial};
 use crate::evaluation::{UnitStatement, equations, expanded, symbol};
@@ -75,7 +77,7 @@ pub fn certificate(
         axes(result, language),
         adjustment(result, before, laboratory, language),
         issuer.past.as_ref().map(|past| switch_on(past, language)).unwrap_or_default(),
-        issuer.unit.as_ref().map(|unit| conformity_statement(unit, language)).unwrap_or_default(),
+        issuer.unit.as_ref().map(|unit| conformity_statement(result, unit, language)).unwrap_or_default(),
         authorisation(laboratory, language),
     ];
     Document {
@@ -208,8 +210,42 @@ fn conditions(result: &CalibrationResult, laboratory: &Laboratory, language: Lan
         (messages.gravity, gravity),
         (messages.speed_uncertainty, speed_uncertainty),
     ]);
-    vec![Block::heading(messages.conditions, 5), facts]
+    vec![Block::heading(messages.conditions, 5), facts, Block::facts(covered(result, language))]
 }
+
+/// What the calibration covers: specific force, speeds, radii, plateaus, latitude.
+pub(crate) fn covered(result: &CalibrationResult, language: Language) -> [(&'static str, String); 5] {
+    let messages = language.messages();
+    let listed = |mut values: Vec<f64>, places: i32, unit: &str| {
+        values.sort_by(f64::total_cmp);
+        let steps = 10_f64.powi(places);
+        let rounded = values.into_iter().map(|value| language.number(&((value * steps).round() / steps).to_string()));
+        let mut shown: Vec<String> = rounded.collect();
+        shown.dedup();
+        let text = match &shown[..] {
+            [first, .., last] if shown.len() > MOST_LISTED => format!("{first} … {last}"),
+            all => all.join("; "),
+        };
+        format!("{text} {}", language.unit(unit))
+    };
+    let model = &result.model;
+    let range = result.calibrated_range() / STANDARD_GRAVITY;
+    let speeds = result.plateaus.iter().map(|plateau| plateau.set_speed.unwrap_or(plateau.speed).abs() * 30.0 / PI);
+    let radii =
+        result.mountings.iter().map(|mounting| mounting.arm[0].hypot(mounting.arm[1])).filter(|radius| *radius > 0.0);
+    let latitude = model.latitude.map(|latitude| format!("{}°", language.fixed(latitude.to_degrees(), 4)));
+    let force = format!("\u{b1}{} g", language.fixed(range, if range < 10.0 { 2 } else { 1 }));
+    [
+        (messages.force_covered, force),
+        (messages.speeds_covered, of_arm(model, listed(speeds.collect(), 2, "rpm"))),
+        (messages.radii_covered, of_arm(model, listed(radii.collect(), 4, "m"))),
+        (messages.plateaus_covered, (result.plateaus.len() - result.held_out().len()).to_string()),
+        (messages.latitude, latitude.unwrap_or_default()),
+    ]
+}
+
+/// As many speeds or radii are listed; of more there stand the least and the largest.
+const MOST_LISTED: usize = 8;
 
 /// 7.8.4.1 c.
 fn traceability(laboratory: &Laboratory, language: Language) -> Vec<Block> {
@@ -238,19 +274,20 @@ fn results(result: &CalibrationResult, language: Language) -> Vec<Block> {
     let messages = language.messages();
     let columns = [
         ("", 0.1, Align::Left),
-        (messages.value, 0.26, Align::Right),
-        ("", 0.12, Align::Left),
-        (messages.coverage_and_degrees, 0.12, Align::Right),
-        (messages.value_si, 0.3, Align::Right),
+        (messages.value, 0.25, Align::Right),
+        ("", 0.1, Align::Left),
+        (messages.coverage_and_degrees, 0.16, Align::Right),
+        (messages.value_si, 0.29, Align::Right),
         ("", 0.1, Align::Left),
     ];
     let rows = rows_by_group(result, &by_group(result, true), language);
     let table = Table { rows, ..Table::numbers(columns, []) };
     let mut blocks = vec![Block::heading(messages.results, 14), Block::paragraph(messages.results_model)];
     blocks.extend(equations(result).map(Block::Paragraph));
+    blocks.push(Block::paragraph(messages.axes_defined));
     blocks.push(Block::Table(table));
     blocks.push(Block::paragraph(messages.uncertainty_statement));
-    blocks.push(Block::facts([(messages.counts_as_exact, counts_as_exact(result, language))]));
+    blocks.push(Block::paragraph(&uncertainty_holds(result, language)));
     blocks.push(Block::paragraph(&presuppositions(result, language)));
     blocks.extend(nominal_output(result, language));
     blocks.push(Block::paragraph(messages.covariance_note));
@@ -272,7 +309,7 @@ fn adjustment(
         blocks.push(Block::Table(results_before(result, before, language)));
     }
     if let Some(errors) = error_table(result, language) {
-        if adjustment.is_none() {
+        if adjustment.is_none() && !result.model.nominal_found {
             blocks.push(Block::paragraph(messages.errors_of_readings));
         }
         blocks.push(Block::Table(errors));
@@ -317,14 +354,15 @@ fn results_before(result: &CalibrationResult, before: &CalibrationResult, langua
 }
 
 /// 7.8.4.1 e and 7.8.6.
-fn conformity_statement(unit: &UnitStatement, language: Language) -> Vec<Block> {
+fn conformity_statement(result: &CalibrationResult, unit: &UnitStatement, language: Language) -> Vec<Block> {
     let messages = language.messages();
     let facts = [
         (messages.specification, unit.specification.clone()),
         (messages.decision_rule, rule(unit.rule, language).to_owned()),
     ];
     let table = Block::Table(conformity_table(unit, language));
-    vec![Block::heading(messages.conformity, 9), Block::facts(facts), table]
+    let condition = condition_of_conformity(result, language).map(Block::Paragraph);
+    [Block::heading(messages.conformity, 9), Block::facts(facts), table].into_iter().chain(condition).collect()
 }
 
 /// 7.8.2.1 d, l, o.

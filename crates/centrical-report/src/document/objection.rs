@@ -1,7 +1,7 @@
 //! Objections and patterns as sentences.
 
 use centrical::uncertainty::{Level, Objection};
-use centrical::{Extension, Rival};
+use centrical::{Course, Extension, Rival};
 use centrical_session::{Follows, MICRO_G, PatternSummary, ResultObjection, RivalSummary};
 
 use super::content::Block;
@@ -103,6 +103,10 @@ pub(crate) fn cause(name: &str, language: Language) -> String {
     match Rival::named(name) {
         Some(rival @ Rival::Effect(Extension::OneMounting(_, mounting))) => {
             format!("{} ({} {})", (messages.words.rival)(rival), messages.in_mounting, mounting + 1)
+        }
+        // The step comes with the rest that begins it.
+        Some(rival @ Rival::Effect(Extension::Disturbance(Course::From(rest)))) => {
+            format!("{} {}", (messages.words.rival)(rival), rest + 1)
         }
         Some(rival) => (messages.words.rival)(rival).to_owned(),
         // A result of a later program may know more.

@@ -5,19 +5,25 @@ use nalgebra::Vector3;
 
 use super::content::{Align, Row, Table};
 use super::tables::axis_titles;
-use crate::evaluation::{ReadingError, expanded_of_normal, reading_errors};
+use crate::evaluation::{ReadingError, reading_errors};
 use crate::language::Language;
 
 /// What is shown of an error: along each axis root mean square and largest magnitude.
 type Size = [(f64, f64); 3];
+
+/// The row of errors before compensation, unless the nominal values of a raw output were found so as to make them small.
+fn as_received<T>(before: T, result: &CalibrationResult) -> Option<T> {
+    (!result.model.nominal_found).then_some(before)
+}
 
 /// Before, after (on an arm without the plateau's speed error), and the expanded uncertainty of compensation: the root mean square of
 /// each axis. None if the unit cannot be compensated.
 pub(super) fn headline_table(result: &CalibrationResult, language: Language) -> Option<Table> {
     let [before, after, speed_free, uncertainty] = sizes(result, language)?;
     let after = if result.model.has_arm() { speed_free } else { after };
-    let rows = [before, after, uncertainty].map(|(name, size)| cells(name, size.map(|(rms, _)| rms), language));
-    Some(table(rows.map(Row::Cells).into(), language))
+    let rows = as_received(before, result).into_iter().chain([after, uncertainty]);
+    let rows = rows.map(|(name, size)| Row::Cells(cells(name, size.map(|(rms, _)| rms), language)));
+    Some(table(rows.collect(), language))
 }
 
 /// Before, after, on an arm also without the plateau's speed error, and the expanded uncertainty of compensation: root mean squares,
@@ -26,7 +32,8 @@ pub(super) fn error_table(result: &CalibrationResult, language: Language) -> Opt
     let messages = language.messages();
     let [before, after, speed_free, uncertainty] = sizes(result, language)?;
     let speed_free = result.model.has_arm().then_some(speed_free);
-    let sizes: Vec<_> = [before, after].into_iter().chain(speed_free).chain([uncertainty]).collect();
+    let sizes: Vec<_> =
+        as_received(before, result).into_iter().chain([after]).chain(speed_free).chain([uncertainty]).collect();
     let part = |heading: &str, of: fn((f64, f64)) -> f64| {
         let rows = sizes.iter().map(|(name, size)| Row::Cells(cells(name, size.map(of), language)));
         std::iter::once(Row::Group(heading.to_owned())).chain(rows).collect::<Vec<_>>()
@@ -77,7 +84,7 @@ fn sizes(result: &CalibrationResult, language: Language) -> Option<[(&'static st
         (messages.before, size(errors, |e| e.before)),
         (messages.after, size(errors, |e| e.after)),
         (messages.after_speed_free, size(errors, |e| e.speed_free)),
-        (messages.compensation_uncertainty, size(errors, |e| e.prediction.map(expanded_of_normal))),
+        (messages.compensation_uncertainty, size(errors, |e| e.expanded_prediction)),
     ])
 }
 

@@ -8,9 +8,9 @@ use super::content::{Align, Block, Column, Document, Fact, Margins, Opening, Row
 use super::drift::drift;
 use super::objection::{pattern, refusal, rival};
 use super::reading_error::{error_note, error_table, headline_table};
-use super::rests_on::{all_rests_on, rests_on};
+use super::rests_on::{all_rests_on, condition_of_conformity, rests_on};
 use super::switch_on::switch_on;
-use super::tables::{by_group, nominal_output, of_arm, parameters, serial};
+use super::tables::{by_group, degrees_of_freedom, nominal_output, of_arm, parameters, serial};
 use crate::evaluation::{UnitStatement, UnitVerdict, equations, symbol};
 use crate::figure::{Figure, positions};
 use crate::language::Language;
@@ -109,11 +109,11 @@ fn verdicts(result: &CalibrationResult, unit: Option<&UnitStatement>, language: 
     facts.push((messages.rank, format!("{} / {}", seen.rank, seen.columns)));
     blocks.push(Block::facts(facts));
     let tone = if objections.is_empty() { Tone::Good } else { Tone::Bad };
-    [Section { tone, ..Section::plain(blocks) }, of_unit(unit, language)]
+    [Section { tone, ..Section::plain(blocks) }, of_unit(result, unit, language)]
 }
 
 /// What is said of the unit, which is not what is said of its calibration.
-fn of_unit(unit: Option<&UnitStatement>, language: Language) -> Section {
+fn of_unit(result: &CalibrationResult, unit: Option<&UnitStatement>, language: Language) -> Section {
     let messages = language.messages();
     let Some(unit) = unit else {
         let blocks = vec![Block::heading(messages.unit_not_asked, 4), Block::paragraph(messages.unit_not_asked_text)];
@@ -137,6 +137,7 @@ fn of_unit(unit: Option<&UnitStatement>, language: Language) -> Section {
         (messages.decision_rule, rule(unit.rule, language).split(':').next().unwrap_or_default().to_owned()),
         (messages.limits_judged, unit.judged.len().to_string()),
     ]));
+    blocks.extend(condition_of_conformity(result, language).map(Block::Paragraph));
     Section { tone, ..Section::plain(blocks) }
 }
 
@@ -231,16 +232,15 @@ fn conduct(result: &CalibrationResult, language: Language) -> Vec<Block> {
     let mountings = result.plateaus.iter().map(|p| p.mounting).max().unwrap_or(0);
     let samples: u64 = result.plateaus.iter().map(|p| p.samples).sum();
     let rejected: u64 = result.plateaus.iter().map(|p| p.rejected).sum();
-    let data = format!(
-        "{}: {mountings}; {}: {}; {}: {}; {}: {}",
-        messages.mountings_used,
-        messages.plateaus_used,
-        result.plateaus.len() - result.held_out().len(),
-        messages.samples,
-        grouped(samples),
-        messages.rejected,
-        grouped(rejected)
-    );
+    let plateaus = result.plateaus.len() - result.held_out().len();
+    // Of rests alone each is a mounting.
+    let used = if model.has_arm() {
+        format!("{}: {mountings}; {}: {plateaus}", messages.mountings_used, messages.plateaus_used)
+    } else {
+        format!("{}: {plateaus}", messages.rests_used)
+    };
+    let data =
+        format!("{used}; {}: {}; {}: {}", messages.samples, grouped(samples), messages.rejected, grouped(rejected));
     let method =
         format!("{} ({}, {})", (words.method)(fit.method), (words.termination)(fit.termination), fit.iterations);
     let of_arm = |fact: String| of_arm(model, fact);
@@ -332,8 +332,8 @@ fn budget(result: &CalibrationResult, language: Language) -> Option<Table> {
         let mut cells = vec![symbol(&parameter.name), language.unit(unit)];
         cells.extend(budget.sources.iter().map(|source| of_source(of_parameter(&source.standard_uncertainty))));
         if combined.is_some() {
-            let degrees =
-                of_parameter(&budget.degrees_of_freedom).map_or("∞".to_owned(), |nu| language.fixed(nu.floor(), 0));
+            let degrees = of_parameter(&budget.degrees_of_freedom)
+                .map_or("∞".to_owned(), |nu| degrees_of_freedom(nu, language));
             cells.extend([shown(combined), degrees]);
         } else {
             cells.extend([messages.not_determined.to_owned(), String::new()]);

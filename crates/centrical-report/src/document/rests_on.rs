@@ -19,7 +19,7 @@ pub(super) fn rests_on(result: &CalibrationResult, language: Language) -> Vec<Bl
     let messages = language.messages();
     let mut blocks = vec![
         Block::heading(messages.rests_on, 4),
-        Block::facts([(messages.counts_as_exact, counts_as_exact(result, language))]),
+        Block::paragraph(&uncertainty_holds(result, language)),
         Block::paragraph(&presupposed(result, language)),
     ];
     if !result.rests_on.is_empty() {
@@ -38,12 +38,35 @@ pub(super) fn all_rests_on(result: &CalibrationResult, language: Language) -> Ve
     vec![Block::heading(language.messages().all_rests_on, 4), Block::Table(table(result, ROWS, language))]
 }
 
-/// The quantities that count as exact.
-pub(crate) fn counts_as_exact(result: &CalibrationResult, language: Language) -> String {
+/// The quantities that count as exact, `None` if there are none.
+pub(crate) fn counts_as_exact(result: &CalibrationResult, language: Language) -> Option<String> {
+    let exact = exact(result);
+    (!exact.is_empty()).then(|| named(exact, language))
+}
+
+/// What the expanded uncertainties hold: all that the GUM asks for, or some sources beside quantities that count as exact.
+pub(crate) fn uncertainty_holds(result: &CalibrationResult, language: Language) -> String {
     let messages = language.messages();
-    let names: Vec<String> =
-        exact(result).into_iter().map(|source| (messages.words.source)(source).to_lowercase()).collect();
-    if names.is_empty() { messages.nothing_exact.to_owned() } else { names.join(", ") }
+    let Some(exact) = counts_as_exact(result, language) else {
+        return format!("{} {}", messages.evaluated_by_gum, messages.nothing_exact);
+    };
+    let weighed = [Some(Source::Noise), result.model.has_arm().then_some(Source::PlateauSpeed)];
+    let held = match &result.budget {
+        Some(budget) => budget.sources.iter().map(|source| source.name).collect(),
+        None => weighed.into_iter().flatten().collect(),
+    };
+    format!("{}: {}. {}: {exact}.", messages.uncertainty_holds, named(held, language), messages.taken_as_exact)
+}
+
+/// On which condition a statement of conformity holds; `None` if no quantity counts as exact.
+pub(crate) fn condition_of_conformity(result: &CalibrationResult, language: Language) -> Option<String> {
+    let exact = counts_as_exact(result, language)?;
+    Some(format!("{}: {exact}.", language.messages().conformity_presupposes))
+}
+
+fn named(sources: Vec<Source>, language: Language) -> String {
+    let name = |source| (language.messages().words.source)(source).to_lowercase();
+    sources.into_iter().map(name).collect::<Vec<_>>().join(", ")
 }
 
 /// Quantities that an uncertainty may be stated of, and that this session states none of.
@@ -123,23 +146,28 @@ pub(crate) fn rests_on_sentence(effect: &RestsOn, language: Language) -> String 
     };
     let uncertainties = language.significant(effect.standard_uncertainties, 2);
     format!(
-        "{}: {unseen} {} {} {uncertainties} {} {}",
+        "{}: {unseen} {} {} {}{} {} {}",
         cause(&effect.name, language),
         symbol(&effect.parameter),
         messages.by,
-        messages.uncertainties_and_reading,
+        (messages.words.standard_uncertainties)(&uncertainties),
+        if language == Language::Russian { "," } else { "" },
+        messages.and_reading_by,
         micro_g(effect.reading, language)
     )
 }
 
+/// In the first unit in which it has four digits at most before the point.
 fn micro_g(acceleration: f64, language: Language) -> String {
-    format!("{} {}", language.significant(acceleration / MICRO_G, 2), language.unit("ug"))
+    let units = [(MICRO_G, "ug"), (1e3 * MICRO_G, "mg"), (1e6 * MICRO_G, "g")];
+    let (size, unit) = units.into_iter().find(|(size, _)| acceleration < 1e4 * size).unwrap_or(units[2]);
+    format!("{} {}", language.significant(acceleration / size, 2), language.unit(unit))
 }
 
 fn size(effect: &RestsOn, language: Language) -> String {
     let (factor, unit) = customary(&effect.unit, effect.group);
     match effect.smallest_shown {
-        Some(size) => format!("{} {}", language.significant(size * factor, 2), language.unit(unit)),
+        Some(size) => format!("{} {}", language.two_digits(size * factor), language.unit(unit)),
         None => language.messages().not_shown.to_owned(),
     }
 }

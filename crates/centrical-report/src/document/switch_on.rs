@@ -1,6 +1,8 @@
 //! What the earlier calibrations of a unit say of a reading after its next switch-on.
 
-use centrical_session::{MICRO_G, ReadingHistory, STANDARD_GRAVITY, UnitHistoryReport, UnitParameter};
+use centrical_session::{
+    MICRO_G, ReadingHistory, STANDARD_GRAVITY, UnitHistoryReport, UnitHistoryRequest, UnitParameter,
+};
 
 use super::content::{Align, Block, Table};
 use crate::evaluation::symbol;
@@ -31,7 +33,8 @@ pub(super) fn switch_on(history: &UnitHistoryReport, language: Language) -> Vec<
 pub(crate) fn switch_on_sentence(history: &UnitHistoryReport, language: Language) -> Option<String> {
     let messages = language.messages();
     let worst = history.readings.iter().max_by(|a, b| a.after_switch_on.total_cmp(&b.after_switch_on))?;
-    let expanded = worst.expanded_after_switch_on.map(|u| format!(", U (95 %) = {}", micro_g(u, language)));
+    let expanded =
+        worst.expanded_after_switch_on.map(|u| format!(", {} = {}", expanded_title(language), micro_g(u, language)));
     let after = format!("{}{}", micro_g(worst.after_switch_on, language), expanded.unwrap_or_default());
     Some(format!(
         "{} {}: u = {after} {ug}; {} {}, {} {} g; {}: {} {ug}; {}: {}",
@@ -85,6 +88,11 @@ fn named(history: &UnitHistoryReport, is_meant: impl Fn(&UnitParameter) -> bool,
     }
 }
 
+/// The only expanded uncertainty of the documents whose probability is not 95.45 %: that of a history.
+fn expanded_title(language: Language) -> String {
+    format!("U ({} %)", language.fixed(100.0 * UnitHistoryRequest::COVERAGE, 2))
+}
+
 fn readings(history: &UnitHistoryReport, language: Language) -> Table {
     let messages = language.messages();
     let ug = language.unit("ug");
@@ -96,7 +104,7 @@ fn readings(history: &UnitHistoryReport, language: Language) -> Table {
         (&stated, 0.15, Align::Right),
         (&between, 0.21, Align::Right),
         (&after, 0.14, Align::Right),
-        ("U (95 %)", 0.15, Align::Right),
+        (&expanded_title(language), 0.15, Align::Right),
     ];
     let row = |r: &ReadingHistory| {
         vec![

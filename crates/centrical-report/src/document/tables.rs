@@ -3,7 +3,7 @@
 use centrical_session::{CalibrationResult, ModelSummary, OutputSummary, ParameterEstimate, SessionSummary, customary};
 
 use super::content::{Align, Block, Row, Table, TableKind};
-use crate::evaluation::{Expanded, expanded, symbol};
+use crate::evaluation::{Expanded, expanded, is_nearly_infinite, symbol};
 use crate::language::Language;
 
 /// The serial number of a unit, or that the session gives none.
@@ -57,8 +57,13 @@ pub(super) fn axis_titles(language: Language) -> [String; 3] {
 /// The coverage factor, beside it the effective degrees of freedom where they are finite.
 pub(super) fn coverage(expanded: &Expanded, language: Language) -> String {
     let k = language.fixed(expanded.factor, 2);
-    let degrees = expanded.degrees_of_freedom.map(|nu| format!("{k} ({})", language.fixed(nu, 0)));
+    let degrees = expanded.degrees_of_freedom.map(|nu| format!("{k} ({})", degrees_of_freedom(nu, language)));
     degrees.unwrap_or(k)
+}
+
+/// Effective degrees of freedom, cut to a whole number.
+pub(super) fn degrees_of_freedom(nu: f64, language: Language) -> String {
+    if is_nearly_infinite(nu) { ">1000".to_owned() } else { language.fixed(nu.floor(), 0) }
 }
 
 /// Symbol, value and unit in the customary unit, coverage factor, the same in SI.
@@ -72,7 +77,9 @@ fn cells(result: &CalibrationResult, parameter: &ParameterEstimate, language: La
         ],
         _ => [language.messages().not_determined.to_owned(), String::new(), String::new()],
     };
-    vec![symbol(&parameter.name), shown, language.unit(unit), k, si, language.unit(&parameter.unit)]
+    // A number has no unit.
+    let si_unit = if parameter.unit == "1" { String::new() } else { language.unit(&parameter.unit) };
+    vec![symbol(&parameter.name), shown, language.unit(unit), k, si, si_unit]
 }
 
 /// The nominal scale and bias of a unit that does not put out an acceleration.
@@ -88,15 +95,17 @@ pub(super) fn nominal_output(result: &CalibrationResult, language: Language) -> 
     let rows = [row(messages.nominal_scale, scale, per_force), row(messages.nominal_bias, bias, unit)];
     let axes = axis_titles(language);
     let columns = [
-        ("", 0.26, Align::Left),
-        (messages.unit, 0.2, Align::Left),
-        (&axes[0], 0.18, Align::Right),
-        (&axes[1], 0.18, Align::Right),
-        (&axes[2], 0.18, Align::Right),
+        ("", 0.2, Align::Left),
+        (messages.unit, 0.14, Align::Left),
+        (&axes[0], 0.22, Align::Right),
+        (&axes[1], 0.22, Align::Right),
+        (&axes[2], 0.22, Align::Right),
     ];
-    vec![
+    let found = result.model.nominal_found.then(|| Block::paragraph(messages.nominal_found));
+    let blocks = [
         Block::Subheading(messages.nominal_output.to_owned()),
         Block::paragraph(messages.nominal_output_text),
         Block::Table(Table::numbers(columns, rows)),
-    ]
+    ];
+    blocks.into_iter().chain(found).collect()
 }

@@ -1,8 +1,9 @@
 //! Statements of conformity: values against limits by the decision rule.
 
+use centrical::Group;
 use centrical_session::{CalibrationResult, Decision, DecisionRule, Limited, StatedLimit};
 
-use super::expanded::{expanded, expanded_of_normal};
+use super::expanded::expanded;
 use super::reading_error::reading_errors;
 
 /// What a decision says of the unit.
@@ -26,8 +27,8 @@ pub struct Judged {
     pub value: Option<(f64, f64)>,
     /// That plateau, `mounting:plateau` counted from 1; `None` of a parameter.
     pub plateau: Option<String>,
-    /// Whether it conforms; nothing can be stated of what the data do not determine, or from a result that is not
-    /// acceptable.
+    /// Whether it conforms; nothing can be stated of what the data do not determine, from a result that is not acceptable, or against nominal
+    /// values that the result itself found.
     pub conforms: Option<bool>,
     /// Whether it is not accepted although the value lies within the limits: by less than the guard band.
     pub is_in_guard_band: bool,
@@ -55,7 +56,7 @@ impl UnitStatement {
                 Limited::Parameter(name) => (parameter(result, name), None),
                 Limited::CompensatedReading(axis) => worst_reading(result, *axis, &limit, decision.rule).unzip(),
             };
-            let judged = value.filter(|_| is_acceptable);
+            let judged = value.filter(|_| is_acceptable && !is_relative_to_itself(result, &limit.of));
             let conforms = judged.map(|value| margin(value, &limit, decision.rule) >= 0.0);
             let is_inside = judged.is_some_and(|value| margin(value, &limit, DecisionRule::Simple) >= 0.0);
             Judged { limit, value, plateau, conforms, is_in_guard_band: conforms == Some(false) && is_inside }
@@ -85,6 +86,13 @@ impl UnitStatement {
     }
 }
 
+/// Whether it is a bias or scale error against nominal values that the same calibration found: it conforms to any limit.
+fn is_relative_to_itself(result: &CalibrationResult, of: &Limited) -> bool {
+    let Limited::Parameter(name) = of else { return false };
+    let group = result.parameter(name).map(|parameter| parameter.group);
+    result.model.nominal_found && matches!(group, Some(Group::Bias | Group::Scale))
+}
+
 fn parameter(result: &CalibrationResult, name: &str) -> Option<(f64, f64)> {
     result.parameter(name).and_then(|p| Some((p.value?, expanded(result, p)?.uncertainty)))
 }
@@ -112,8 +120,7 @@ fn worst_reading(
     let errors = reading_errors(result)?;
     let points = errors.iter().zip(&result.plateaus).map(|(error, plateau)| {
         let j = axis - 1;
-        let u = error.uncertainty[j].hypot(error.prediction[j]);
-        let value = (error.speed_free[j], expanded_of_normal(u));
+        let value = (error.speed_free[j], error.expanded[j]);
         (value, format!("{}:{}", plateau.mounting, plateau.index + 1))
     });
     points.min_by(|(a, _), (b, _)| margin(*a, limit, rule).total_cmp(&margin(*b, limit, rule)))

@@ -6,6 +6,14 @@ use centrical_session::{CalibrationResult, ParameterEstimate, PredictionReport};
 /// Coverage factor where the degrees of freedom are infinite.
 const COVERAGE_FACTOR: f64 = 2.0;
 
+/// Degrees of freedom above these are shown as such: no table of Student's distribution has them.
+const MANY_DEGREES: f64 = 1000.0;
+
+/// Whether documents show degrees of freedom as more than a thousand.
+pub(crate) fn is_nearly_infinite(degrees_of_freedom: f64) -> bool {
+    degrees_of_freedom > MANY_DEGREES
+}
+
 /// Probability that expanded uncertainties cover.
 pub(crate) const COVERAGE_PROBABILITY: f64 = PredictionReport::COVERAGE;
 
@@ -30,6 +38,16 @@ pub(crate) fn expanded_of_normal(standard_uncertainty: f64) -> f64 {
 /// what the session states; the budget gives the degrees of freedom.
 pub(crate) fn expanded(result: &CalibrationResult, parameter: &ParameterEstimate) -> Option<Expanded> {
     Some(expanded_of(parameter.standard_uncertainty?, result.degrees_of_freedom(&parameter.name)))
+}
+
+/// `U = k u` of independent contributions, standard uncertainties with their degrees of freedom (Welch-Satterthwaite; GUM, G.4).
+pub(crate) fn expanded_of_independent(contributions: &[(f64, Degrees)]) -> f64 {
+    let combined = contributions.iter().fold(0.0, |sum: f64, (u, _)| sum.hypot(*u));
+    let degrees = match Degrees::effective(contributions) {
+        Degrees::Finite(nu) => Some(nu),
+        Degrees::Infinite => None,
+    };
+    expanded_of(combined, degrees).uncertainty
 }
 
 /// `U = k u` of a quantity with these effective degrees of freedom, infinite if none are given.

@@ -2,9 +2,11 @@
 
 use std::collections::HashSet;
 
-use centrical::uncertainty::Compensated;
+use centrical::uncertainty::{Compensated, Degrees};
 use centrical_session::{CalibrationResult, PlateauSummary};
 use nalgebra::{Matrix3, Vector3};
+
+use super::expanded::expanded_of_independent;
 
 /// Errors of the reading on one plateau, SI.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -19,19 +21,45 @@ pub(crate) struct ReadingError {
     pub speed_free: Vector3<f64>,
     /// Standard uncertainty of `speed_free` from the noise of the mean.
     pub uncertainty: Vector3<f64>,
-    /// Standard uncertainty that the parameters leave in a compensated reading of this specific force.
-    pub prediction: Vector3<f64>,
+    /// Expanded uncertainty that the parameters leave in a compensated reading of this specific force.
+    pub expanded_prediction: Vector3<f64>,
+    /// Expanded uncertainty of `speed_free` from both.
+    pub expanded: Vector3<f64>,
 }
 
 /// Errors on every plateau; `None` if a coefficient of the error model is not determined, or a covariance is not positive definite.
 pub(crate) fn reading_errors(result: &CalibrationResult) -> Option<Vec<ReadingError>> {
     let compensated = compensated(result)?;
     let of_rests: HashSet<usize> = result.rests().map(|rest| rest.mounting).collect();
-    let error = |plateau: &PlateauSummary| reading_error(plateau, of_rests.contains(&plateau.mounting), &compensated);
+    let degrees = [1, 2, 3].map(|axis| fewest_degrees(result, axis));
+    let error =
+        |plateau: &PlateauSummary| reading_error(plateau, of_rests.contains(&plateau.mounting), &compensated, &degrees);
     result.plateaus.iter().map(error).collect()
 }
 
-fn reading_error(plateau: &PlateauSummary, is_rest: bool, compensated: &Compensated) -> Option<ReadingError> {
+/// Expanded uncertainty that the parameters leave along each axis in a compensated reading of a specific force along it of this size, the larger
+/// of both senses [m/s^2]; `None` if a coefficient is not determined.
+pub(crate) fn expanded_along_axes(result: &CalibrationResult, size: f64) -> Option<[f64; 3]> {
+    let compensated = compensated(result)?;
+    let along =
+        |j: usize| compensated.curve(&Vector3::ith(j, 1.0), size, 2).iter().map(|end| end.along).fold(0.0, f64::max);
+    Some([0, 1, 2].map(|j| expanded_of_independent(&[(along(j), fewest_degrees(result, j + 1))])))
+}
+
+/// Fewest effective degrees of freedom of the coefficients of a newtonometer, for all that they leave in a compensated reading: the result
+/// has the share of a source in each coefficient, but not in their combination.
+fn fewest_degrees(result: &CalibrationResult, axis: usize) -> Degrees {
+    let own = result.model.error_model.iter().filter(|term| term.axis == axis);
+    let fewest = own.filter_map(|term| result.degrees_of_freedom(&term.name)).reduce(f64::min);
+    fewest.map_or(Degrees::Infinite, Degrees::Finite)
+}
+
+fn reading_error(
+    plateau: &PlateauSummary,
+    is_rest: bool,
+    compensated: &Compensated,
+    degrees: &[Degrees; 3],
+) -> Option<ReadingError> {
     let force = Vector3::from(plateau.specific_force?);
     let residual = Vector3::from(plateau.residual);
     // A residual is small, so the inverse of the error model is that of its gain.
@@ -41,13 +69,18 @@ fn reading_error(plateau: &PlateauSummary, is_rest: bool, compensated: &Compensa
     let seen = if is_rest { along * along.transpose() } else { Matrix3::identity() };
     let of_speed = if is_rest { Vector3::zeros() } else { of_speed(plateau, &residual)? };
     let noise = seen * to_force * matrix(&plateau.covariance) * to_force.transpose() * seen;
+    let uncertainty = noise.diagonal().map(f64::sqrt);
+    let prediction = compensated.covariance(&force)?.diagonal().map(|variance| variance.max(0.0).sqrt());
+    let of_parameters = |j: usize| (prediction[j], degrees[j]);
+    let both = |j: usize| expanded_of_independent(&[of_parameters(j), (uncertainty[j], Degrees::Infinite)]);
     Some(ReadingError {
         force,
         before: Vector3::from(plateau.mean) - force,
         after: seen * to_force * residual,
         speed_free: seen * to_force * (residual - of_speed),
-        uncertainty: noise.diagonal().map(f64::sqrt),
-        prediction: compensated.covariance(&force)?.diagonal().map(|variance| variance.max(0.0).sqrt()),
+        uncertainty,
+        expanded_prediction: Vector3::from_fn(|j, _| expanded_of_independent(&[of_parameters(j)])),
+        expanded: Vector3::from_fn(|j, _| both(j)),
     })
 }
 

@@ -14,7 +14,8 @@ pub(super) fn figures(result: &CalibrationResult, language: Language) -> Vec<Fig
     let errors = reading_errors(result).unwrap_or_default();
     let mut figures = Vec::new();
     if !errors.is_empty() {
-        figures.push(before(&errors, language));
+        // Nominal values that the calibration found make the errors before it small.
+        figures.extend((!result.model.nominal_found).then(|| before(&errors, language)));
         figures.push(after(&errors, result.model.has_arm(), language));
     }
     figures.push(residuals(result, language));

@@ -95,6 +95,9 @@ pub fn write_documents(request: &DocumentRequest) -> Result<Documents, Error> {
     if let Some(code) = request.code.as_ref().filter(|code| outputs.contains(code)) {
         return Err(Error::content(code, Place::Whole, "a document of the name of the folder for code", "two names"));
     }
+    if request.pdf.is_some() || request.dcc.is_some() {
+        refuse_unnamed_item(&result, &request.result)?;
+    }
     let language = request.language;
     let unit = issuer.as_ref().and_then(|issuer| issuer.unit.as_ref());
     // What can be refused comes before the first document is written.
@@ -173,6 +176,9 @@ pub fn write_all_documents(
     language: Language,
     folder: &Path,
 ) -> Result<(), Error> {
+    if issuer.is_some() {
+        refuse_unnamed_item(result, &folder.join("result.json"))?;
+    }
     let unit = issuer.and_then(|issuer| issuer.unit.as_ref());
     let drawn = figures(result, language);
     let report = html(&report(result, unit, None, drawn.clone(), language));
@@ -271,6 +277,16 @@ pub fn write_plots(folder: &Path, plots: &[(impl Display, Plot)], inputs: &[Path
     let _claim = claim_folder(folder)?;
     let files = files.into_iter().zip(plots).map(|(file, (_, plot))| (file, plot.to_svg().into_bytes()));
     Ok(write_together(&files.collect::<Vec<_>>())?)
+}
+
+/// Refuses a certificate of an item that nothing identifies (ISO/IEC 17025, 7.8.2.1 g).
+fn refuse_unnamed_item(result: &CalibrationResult, file: &Path) -> Result<(), Error> {
+    if !result.session.unit_serial.is_empty() {
+        return Ok(());
+    }
+    let expected = "the serial number under [unit] of the session, or --serial of a tumble: a certificate identifies its item \
+                    (ISO/IEC 17025, 7.8.2.1 g)";
+    Err(Error::content(file, Place::Whole, "a unit without a serial number", expected))
 }
 
 /// Who issues the documents of `result`, from the laboratory's file, with what its decision says of the unit.

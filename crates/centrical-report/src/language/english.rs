@@ -31,14 +31,14 @@ pub(crate) const ENGLISH: Messages = Messages {
     residual_error: "Reading error over the calibrated range",
     residual_error_note: "Over all plateaus, against the specific \
         force of the fitted geometry. The second row still holds the error of each plateau’s speed; the third is without \
-        it, which along the arm leaves next to nothing, so it speaks for the axes across the arm and for rest. The last \
+        it. Along the arm this leaves almost no error; the row therefore tests the other axes and rest. The last \
         row is the expanded uncertainty that the parameters leave in a compensated reading of the same force.",
     residual_error_note_of_rests: "Over all rests, against the force of gravity in the fitted attitudes. The last row is \
         the expanded uncertainty that the parameters leave in a compensated reading of the same force.",
     before: "Before compensation",
     after: "After compensation",
     after_speed_free: "After, less the speed error of each plateau",
-    compensation_uncertainty: "Uncertainty of compensation, k = 2",
+    compensation_uncertainty: "Expanded uncertainty of compensation, U",
     axis: "axis",
     newtonometer: "Newtonometer",
     number_sign: "No.",
@@ -137,7 +137,7 @@ pub(crate) const ENGLISH: Messages = Messages {
     singular_caption_short: "Those below the limit belong to combinations that the experiment does not see; they \
         are named under the plot.",
     determined: "determined",
-    lost: "not seen",
+    lost: "undetermined",
     limit: "limit",
     null_directions: "The readings do not change along",
     prediction_title: "Uncertainty of a compensated reading",
@@ -204,10 +204,18 @@ pub(crate) const ENGLISH: Messages = Messages {
     traceable_to: "Traceable to",
     results: "Results",
     results_model: "Error model of the reading f′ of axis i at the specific force f:",
+    axes_defined: "Axis 1 lies along newtonometer 1, axis 2 in the plane of newtonometers 1 and 2, axis 3 completes a right-handed \
+        frame. Each of f₁, f₂, f₃ is the component of specific force along its axis at the proof mass of that newtonometer.",
+    force_covered: "Range of specific force",
+    speeds_covered: "Speeds",
+    radii_covered: "Radii",
+    plateaus_covered: "Plateaus used",
     uncertainty_statement: "The reported expanded uncertainty U is the standard uncertainty multiplied by the coverage \
         factor k for a coverage probability of approximately 95 % (95.45 %): k = 2 for a normal distribution; where the \
-        effective degrees of freedom νeff are finite, that of Student’s distribution. It was evaluated in accordance with \
-        JCGM 100 (GUM) and EA-4/02. 1 g = 9.80665 m/s².",
+        effective degrees of freedom νeff are finite, that of Student’s distribution. 1 g = 9.80665 m/s².",
+    evaluated_by_gum: "U was evaluated in accordance with JCGM 100 (GUM) and EA-4/02.",
+    uncertainty_holds: "U contains these contributions",
+    taken_as_exact: "These quantities were taken as exact and contribute nothing to it",
     adjustment: "Before and after adjustment",
     before_adjustment: "Before adjustment, ± U",
     calibrated_before_adjustment: "Calibration before the adjustment",
@@ -227,6 +235,7 @@ pub(crate) const ENGLISH: Messages = Messages {
     does_not_conform: "does not conform",
     in_guard_band: "not accepted",
     conformity_not_stated: "not stated",
+    conformity_presupposes: "The statement presupposes that these quantities, which were taken as exact, are exact",
     authorised: "Authorised by",
     responsible: "Persons responsible",
     signature: "signature",
@@ -237,6 +246,7 @@ pub(crate) const ENGLISH: Messages = Messages {
         result.json.",
     mountings_used: "mountings",
     plateaus_used: "plateaus",
+    rests_used: "rests",
     uncertainty: "Expanded uncertainty",
     covariance: "Covariance matrix of the parameters",
     specific_force: "Specific force",
@@ -269,8 +279,7 @@ pub(crate) const ENGLISH: Messages = Messages {
     checks: "Checks of the fit",
     contents: "Further, to be opened",
     effects_absent: "Effects whose absence is presupposed",
-    counts_as_exact: "Counts as exact",
-    nothing_exact: "nothing of what enters the model",
+    nothing_exact: "No input quantity is treated as exact.",
     all_rests_on: "Effects presupposed absent, in full",
     corrected_for: "corrected for the number of mountings,",
     f_test: "F test",
@@ -279,6 +288,8 @@ pub(crate) const ENGLISH: Messages = Messages {
     nominal_output: "Nominal conversion of the output",
     nominal_output_text: "Readings are f′ = (N − b)/S with the nominal scale S and the nominal bias b of the raw output N; \
         these are conventions, without uncertainty, and the parameters are corrections to them.",
+    nominal_found: "This calibration found the nominal values itself. Biases and scale errors are therefore relative to its own values, and no \
+        conformity is stated of them.",
     nominal_scale: "Nominal scale S",
     nominal_bias: "Nominal bias b",
     compensated_reading: "compensated reading, axis",
@@ -291,6 +302,7 @@ pub(crate) const ENGLISH: Messages = Messages {
         between_rests: words::between_rests,
         turning: words::turning,
         next_rest: words::next_rest,
+        standard_uncertainties: words::standard_uncertainties,
         group: words::group,
         meaning: words::meaning,
         source: words::source,
@@ -331,7 +343,7 @@ pub(crate) const ENGLISH: Messages = Messages {
     would_not_show: "it would not show; that size moves",
     would_never_show: "no size of it would show; a typical size moves",
     by: "by",
-    uncertainties_and_reading: "standard uncertainties and a compensated reading by",
+    and_reading_by: "and a compensated reading by",
     presupposed: "The stated uncertainties presuppose a rigid arm, a constant temperature of the unit, and speeds whose errors \
         are independent from plateau to plateau.",
     presupposed_of_rests: "The stated uncertainties presuppose a constant temperature of the unit, and rests in which it stands still.",

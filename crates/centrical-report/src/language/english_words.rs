@@ -17,6 +17,10 @@ pub(super) fn axes(name: &AxesName) -> String {
     }
 }
 
+pub(super) fn standard_uncertainties(number: &str) -> String {
+    format!("{number} standard uncertainties")
+}
+
 pub(super) fn group(group: Group) -> &'static str {
     match group {
         Group::Bias => "Bias",
@@ -204,7 +208,7 @@ pub(super) fn rival(rival: Rival) -> &'static str {
             Extension::BiasWander | Extension::Disturbance(Course::Wander(_)) => {
                 "bias that wanders over the session: warm-up, or a slow wave"
             }
-            Extension::Disturbance(Course::From(_)) => "step of the bias between two rests",
+            Extension::Disturbance(Course::From(_)) => "step of the bias before rest",
             Extension::OneSpeed(_) => "one set speed that is off",
             Extension::OneMounting(Difference::Shift, _) => "shift of the unit in one mounting",
             Extension::OneMounting(Difference::Turn, _) => "turn of the unit in one mounting",

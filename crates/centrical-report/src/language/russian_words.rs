@@ -15,10 +15,22 @@ pub(super) fn axes(name: &AxesName) -> String {
     }
 }
 
+/// The form of the noun follows the last digits of a whole number; of a fraction it is the genitive.
+pub(super) fn standard_uncertainties(number: &str) -> String {
+    let noun = match number.as_bytes() {
+        digits if digits.contains(&b',') => "стандартной неопределённости",
+        [.., b'1', _] => "стандартных неопределённостей",
+        [.., b'1'] => "стандартную неопределённость",
+        [.., b'2'..=b'4'] => "стандартные неопределённости",
+        _ => "стандартных неопределённостей",
+    };
+    format!("{number} {noun}")
+}
+
 pub(super) fn group(group: Group) -> &'static str {
     match group {
         Group::Bias => "Смещение нуля",
-        Group::Scale => "Погрешность масштаба",
+        Group::Scale => "Погрешность масштабного коэффициента",
         Group::Misalignment => "Перекос оси",
         Group::Quadratic => "Квадратичный член",
         Group::Cubic => "Кубичный член",
@@ -54,7 +66,7 @@ pub(super) fn group(group: Group) -> &'static str {
 pub(super) fn meaning(of: Group) -> &'static str {
     match of {
         Group::Bias => "смещение нуля: показание без удельной силы",
-        Group::Scale => "погрешность масштаба: относительная погрешность наклона по собственной оси",
+        Group::Scale => "погрешность масштабного коэффициента: относительная погрешность наклона по собственной оси",
         Group::Misalignment => "перекос: доля силы вдоль другой оси, попадающая в показание, угол",
         Group::Quadratic => "квадратичный коэффициент: показание от квадрата силы вдоль оси j",
         Group::Cubic => "кубичный коэффициент по собственной оси",
@@ -134,7 +146,7 @@ pub(super) fn rival(rival: Rival) -> &'static str {
         Rival::Terms(Extra::CrossProducts) => "произведения двух составляющих силы",
         Rival::Terms(Extra::CrossCubes) => "кубы других составляющих силы",
         Rival::Terms(Extra::CubicProducts) => "произведения трёх составляющих силы",
-        Rival::Terms(Extra::OddQuadratic) => "нечётный квадрат силы",
+        Rival::Terms(Extra::OddQuadratic) => "квадрат силы со знаком, f·|f|",
         Rival::Terms(Extra::Asymmetry) => "масштаб, зависящий от знака силы",
         Rival::Terms(Extra::FourthPower) => "четвёртая степень силы",
         Rival::Terms(Extra::FifthPower) => "пятая степень силы",
@@ -200,7 +212,7 @@ pub(super) fn rival(rival: Rival) -> &'static str {
             Extension::BiasWander | Extension::Disturbance(Course::Wander(_)) => {
                 "плавное изменение нуля за время эксперимента: прогрев или медленная волна"
             }
-            Extension::Disturbance(Course::From(_)) => "скачок нуля между двумя положениями покоя",
+            Extension::Disturbance(Course::From(_)) => "скачок нуля перед положением покоя",
             Extension::OneSpeed(_) => "ошибка одной заданной скорости",
             Extension::OneMounting(Difference::Shift, _) => "смещение прибора в одной установке",
             Extension::OneMounting(Difference::Turn, _) => "поворот прибора в одной установке",
@@ -296,10 +308,18 @@ pub(super) fn next_rest(next: &NextAttitudeSummary) -> String {
 mod tests {
     use centrical::{Course, Difference, Extension, Rival};
 
-    use super::formula;
+    use super::{formula, standard_uncertainties};
 
     /// Letters and functions of formulas.
     const SYMBOLS: &str = "Omega omega delta kappa tau alpha theta rho Gamma sgn ln sum";
+
+    #[test]
+    fn the_noun_agrees_with_the_last_digits() {
+        let shown = ["1", "21", "22", "104", "11", "112", "25", "110", "2,4", "0,21"].map(standard_uncertainties);
+        let nouns = shown.map(|text| text.split_once(' ').unwrap().1.replace("неопределённост", ""));
+        let [one, few, many, part] = ["стандартную ь", "стандартные и", "стандартных ей", "стандартной и"];
+        assert_eq!(nouns, [one, one, few, few, many, many, many, many, part, part]);
+    }
 
     #[test]
     fn formulas_have_no_english_words() {

@@ -168,7 +168,7 @@ fn cell(parameter: &ParameterEstimate) -> Cell {
     let factor = customary(&parameter.unit, parameter.group).0;
     match (parameter.value, parameter.standard_uncertainty) {
         (Some(value), Some(uncertainty)) => Cell::estimate(factor, value, uncertainty),
-        _ => "not seen".into(),
+        _ => "undetermined".into(),
     }
 }
 
@@ -178,12 +178,12 @@ fn not_estimable(screen: &mut Screen, result: &CalibrationResult) {
         let vague: Vec<&str> = result.parameters.iter().filter(|p| !p.estimable).map(|p| p.name.as_str()).collect();
         if !vague.is_empty() {
             screen.gap();
-            screen.head("NOT SEEN", &format!("to a tenth or better: {}", vague.join(", ")));
+            screen.head("UNDETERMINED", &format!("to a tenth or better: {}", vague.join(", ")));
         }
         return;
     }
     screen.gap();
-    screen.head("NOT SEEN", &format!("rank {} of {}: the readings do not change along", seen.rank, seen.columns));
+    screen.head("UNDETERMINED", &format!("rank {} of {}: the readings do not change along", seen.rank, seen.columns));
     for direction in &result.null_directions_in_short() {
         screen.say(2, &combination(direction));
     }
@@ -282,7 +282,9 @@ fn uncertainties(screen: &mut Screen, result: &CalibrationResult) {
     let names: Vec<&str> = budget.sources.iter().map(|source| source.name.name()).collect();
     screen.fact("FROM", &names.join(", "));
     let exact = counts_as_exact(result, Language::English);
-    screen.fact("", &format!("counts as exact: {exact}; gravity is {} m/s^2", result.model.gravity));
+    let exact =
+        exact.map_or("no input quantity is treated as exact".to_owned(), |names| format!("counts as exact: {names}"));
+    screen.fact("", &format!("{exact}; gravity is {} m/s^2", result.model.gravity));
 }
 
 /// Plateaus that are named one by one where they are held out.
@@ -311,8 +313,8 @@ fn validity(screen: &mut Screen, result: &CalibrationResult) {
     if let Some((worst, family_wise)) = validity.worst_mounting() {
         let what = if is_of_rests { "rest" } else { "mounting" };
         let text = format!(
-            "each {what} predicted from all others: {what} {} is the worst, chi^2 {:.1} with {}; a worst of {} as \
-                 large comes by chance with a probability of {family_wise:.3}",
+            "each {what} predicted from all others: {what} {} is the worst, chi^2 {:.1} with {}; by the F test a worst of {} as \
+                 large comes by chance with a probability of at most {family_wise:.3}",
             worst.mounting,
             worst.chi_squared,
             counted(worst.degrees_of_freedom, "degree"),

@@ -7,14 +7,14 @@ use centrical_compensate::Certificate;
 use centrical_session::CompensatedRecord;
 
 use super::screen::{Emphasis, Screen};
-use crate::number::counted;
+use crate::number::{counted, rounded_down};
 
 /// What became of a record, where the inverse is unique, and where the specific forces are.
 pub fn compensation_text(compensated: &CompensatedRecord, certificate: &Certificate, out: &Path) -> Screen {
     let g = |f: f64| format!("{:.6} g", f / STANDARD_GRAVITY);
     let Certificate { range, margin, .. } = *certificate;
     let farthest = if margin.is_finite() {
-        format!("up to {:.0} g", margin * range / STANDARD_GRAVITY)
+        format!("up to {} g", rounded_down(margin * range / STANDARD_GRAVITY, 3))
     } else {
         "anywhere".to_owned()
     };
@@ -38,10 +38,10 @@ pub fn compensation_text(compensated: &CompensatedRecord, certificate: &Certific
         screen.marked(Emphasis::Warning, "WARNING", &words);
     }
     let words = format!(
-        "{} in {} compensated, range {} on each axis; the inverse is unique there, and could be asked for {farthest}",
+        "{} in {} compensated, range {} g on each axis; the inverse is unique there, and could be asked for {farthest}",
         counted(compensated.readings - compensated.outside.count, "reading"),
         compensated.unit,
-        g(range)
+        rounded_down(range / STANDARD_GRAVITY, 5)
     );
     screen.say(0, &words);
     let out = out.display();

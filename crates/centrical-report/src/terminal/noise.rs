@@ -121,9 +121,9 @@ fn terms(screen: &mut Screen, reading: &ReadingNoise) {
                 format!("{value} ± {uncertainty} {unit}")
             }
             Coefficient::NotDetermined { upper_bound } if upper_bound.is_finite() => {
-                format!("not seen, below {} {unit} (95 %)", significant(factor * upper_bound, 2))
+                format!("undetermined, below {} {unit} (95 %)", significant(factor * upper_bound, 2))
             }
-            Coefficient::NotDetermined { .. } => "not seen".to_owned(),
+            Coefficient::NotDetermined { .. } => "undetermined".to_owned(),
         };
         table.row([term.symbol().into(), term.name().into(), value.into()]);
     }

@@ -40,7 +40,7 @@ fn protection(effect: &RestsOn) -> String {
         return "protect: measure the speeds (measured under [centrifuge])".to_owned();
     }
     if let Some(Rival::Effect(Extension::Disturbance(Course::From(_)))) = effect.rival() {
-        return "protect: further rests in attitudes of before show a smaller step".to_owned();
+        return "Repeating earlier attitudes would reveal a smaller step.".to_owned();
     }
     if let Some(Rival::Effect(Extension::EarthRate)) = effect.rival() {
         return "protect: state latitude under [site]".to_owned();

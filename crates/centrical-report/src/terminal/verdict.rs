@@ -5,7 +5,7 @@ use centrical_session::{CalibrationResult, Redundancy, ResultObjection};
 use super::calibrate::table_of;
 use super::phrases::short_list;
 use super::screen::{Emphasis, Screen};
-use crate::document::{judged_in_words, objection};
+use crate::document::{counts_as_exact, judged_in_words, objection};
 use crate::evaluation::{UnitStatement, UnitVerdict};
 use crate::language::Language;
 use crate::number::counted;
@@ -52,6 +52,17 @@ pub fn objections_text(objections: &[ResultObjection]) -> Screen {
     if !objections.is_empty() {
         let reasons = format!("for {}, in the first lines", counted(objections.len(), "reason"));
         screen.close(Emphasis::NotAcceptable, "NOT ACCEPTABLE", &reasons);
+    }
+    screen
+}
+
+/// The quantities that a certificate of the result takes as exact: empty without any.
+pub fn exact_text(result: &CalibrationResult) -> Screen {
+    let mut screen = Screen::default();
+    if let Some(exact) = counts_as_exact(result, Language::English) {
+        let words =
+            format!("{exact}: U in the certificate holds nothing of them; [uncertainty] of the session states them");
+        screen.marked(Emphasis::Warning, "COUNT AS EXACT", &words);
     }
     screen
 }

@@ -81,7 +81,7 @@ fn generate_for(terms: &[Named], output: Option<&OutputSummary>, axes: Axes) -> 
         Some(axes) => compensation.in_axes(axes),
         None => compensation,
     };
-    for file in compensation_source(&heading, &names, &compensation, output) {
+    for file in compensation_source(&heading, &names, &compensation, 0.5 * RANGE, output) {
         fs::write(folder.path().join(file.name), file.text).unwrap();
     }
     folder

@@ -43,6 +43,8 @@ pub struct Session {
     pub station: String,
     /// What the unit puts out.
     pub output_unit: OutputUnit,
+    /// Whether the nominal scale and bias of a raw output were found in the records of this session.
+    pub nominal_found: bool,
     /// The experiment. Its set points are those of the plateau table where the session brings one.
     pub experiment: Experiment,
     /// The error model of the unit.
@@ -293,6 +295,7 @@ impl Session {
             unit_serial: form.unit.serial.clone(),
             station: centrifuge.map_or_else(String::new, |table| table.station.clone()),
             output_unit: OutputUnit::named(&form.unit.output_unit),
+            nominal_found: [&form.unit.counts, &form.unit.volts].into_iter().flatten().any(|raw| raw.found),
             type_b: TypeB::default(),
             speeds,
             experiment,

@@ -366,7 +366,7 @@ fn session_text(request: &TumbleRequest, coarse: Option<&CoarseScale>, rests: &R
     match coarse.zip(raw) {
         Some((CoarseScale { scale, bias }, (_, unit, key))) => {
             line(format!("output_unit = \"{unit}\""));
-            line(format!("{key} = {{ scale = {:?}, bias = {:?} }}\n", scale.as_slice(), bias.as_slice()));
+            line(format!("{key} = {{ scale = {:?}, bias = {:?}, found = true }}\n", scale.as_slice(), bias.as_slice()));
         }
         None => line(format!("output_unit = {}\n", toml_text(&request.unit))),
     }

@@ -61,7 +61,7 @@ impl CalibrationResult {
             program: Program::this(),
             inputs: reduced.inputs.clone(),
             session: SessionSummary::new(session),
-            model: ModelSummary::new(model),
+            model: ModelSummary { nominal_found: session.nominal_found, ..ModelSummary::new(model) },
             output: OutputSummary::of(session),
             axes: None,
             parameters: (0..count)
@@ -182,6 +182,7 @@ impl ModelSummary {
             gravity: experiment.site.gravity,
             latitude: experiment.site.latitude,
             speed_uncertainty: model.experiment().centrifuge.speed_uncertainty,
+            nominal_found: false,
             positions: experiment.positions.iter().map(PositionSummary::new).collect(),
         }
     }

@@ -150,6 +150,10 @@ pub struct ModelSummary {
     pub latitude: Option<f64>,
     /// Relative standard uncertainty of a plateau's speed.
     pub speed_uncertainty: f64,
+    /// Whether the nominal scale and bias of a raw output were found by this calibration: its biases and scale errors are then relative to
+    /// themselves.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub nominal_found: bool,
     /// Nominal attitudes of the unit.
     #[serde(default)]
     pub positions: Vec<PositionSummary>,

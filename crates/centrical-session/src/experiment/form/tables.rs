@@ -185,6 +185,9 @@ pub(crate) struct RawTable {
     pub scale: [f64; 3],
     /// Counts or volts at no specific force.
     pub bias: [f64; 3],
+    /// Whether both were found in the records of this session, by `centrical tumble`, and are no values of a data sheet.
+    #[serde(default)]
+    pub found: bool,
 }
 
 #[derive(Debug, Deserialize, JsonSchema)]

@@ -10,7 +10,7 @@ use super::file_roles::FileColumns;
 use super::findings::{Attitude, Findings, Set};
 use super::output_unit::OutputUnit;
 use super::sighting::{NOMINAL_RATE, Raw, SeenMounting};
-use super::tumbled::Tumbled;
+use super::tumbled::{Tumbled, uncertainty};
 use crate::error::Error;
 use crate::settings::toml_text;
 
@@ -36,6 +36,7 @@ pub(super) fn draft(
     session(&mut draft, tumbled);
     unit(&mut draft, &findings.unit, tumbled);
     machine(&mut draft);
+    uncertainty(&mut draft, tumbled);
     columns(&mut draft, mountings, &findings.unit);
     let ids = positions(&mut draft, &findings.attitudes, request.six_positions);
     let is_common = findings.schedules.iter().all(|schedule| *schedule == findings.schedules[0]);

@@ -68,13 +68,18 @@ impl Tumbled {
         format!("{name} = {{ scale = {:?}, bias = {:?} }}", self.raw.scale, self.raw.bias)
     }
 
-    /// The tables of rests, and the uncertainties beside them.
-    pub fn rests(&self, draft: &mut Draft, folder: &Path) {
-        if self.gravity_uncertainty > 0.0 {
+    /// The table of uncertainties with that of gravity, and whether the tumble states one.
+    fn gravity_uncertainty(&self, draft: &mut Draft) -> bool {
+        let is_stated = self.gravity_uncertainty > 0.0;
+        if is_stated {
             draft.line("[uncertainty]");
             draft.found(&format!("gravity = \"{:?} m/s^2\"", self.gravity_uncertainty), &self.how());
-            draft.line("");
         }
+        is_stated
+    }
+
+    /// The tables of rests.
+    pub fn rests(&self, draft: &mut Draft, folder: &Path) {
         for table in &self.rests {
             draft.line("[[tumble]]");
             for (key, file) in ["rests", "attitudes"].into_iter().zip(table.files()) {
@@ -94,3 +99,28 @@ impl Tumbled {
 
 /// What nobody states by default, and what it brings.
 const BIAS_CHANGE: &str = "# bias_change = \"0 mg\"  # in one switch-on with the arm; or how far each bias may have moved: the rests then sharpen biases";
+
+/// What counts as exact unless a laboratory states it, with examples of values, as lines to take the mark of a comment from.
+const STATED: [&str; 7] = [
+    "latitude = \"0.1 deg\"",
+    "radius = \"0.1 mm\"",
+    "radius_difference = \"10 um\"",
+    "speed_scale = \"2 ppm\"",
+    "rest_angle = \"10 arcsec\"",
+    "proof_masses = \"0.1 mm\"",
+    "attitude = \"20 arcsec\"",
+];
+
+/// The table of uncertainties, with that of gravity if the tumble states one.
+pub(super) fn uncertainty(draft: &mut Draft, tumbled: Option<&Tumbled>) {
+    draft.line("# Standard uncertainties of what the laboratory states (type B): without them these quantities count as exact.");
+    let has_gravity = tumbled.is_some_and(|tumbled| tumbled.gravity_uncertainty(draft));
+    if !has_gravity {
+        draft.line("# [uncertainty]");
+        draft.line("# gravity = \"2e-5 m/s^2\"");
+    }
+    for line in STATED {
+        draft.line(&format!("# {line}"));
+    }
+    draft.line("");
+}
