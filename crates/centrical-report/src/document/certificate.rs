@@ -226,7 +226,7 @@ pub(crate) fn covered(result: &CalibrationResult, language: Language) -> [(&'sta
             [first, .., last] if shown.len() > MOST_LISTED => format!("{first} … {last}"),
             all => all.join("; "),
         };
-        format!("{text} {}", language.unit(unit))
+        format!("{text} {unit}")
     };
     let model = &result.model;
     let range = result.calibrated_range() / STANDARD_GRAVITY;
@@ -237,8 +237,8 @@ pub(crate) fn covered(result: &CalibrationResult, language: Language) -> [(&'sta
     let force = format!("\u{b1}{} g", language.fixed(range, if range < 10.0 { 2 } else { 1 }));
     [
         (messages.force_covered, force),
-        (messages.speeds_covered, of_arm(model, listed(speeds.collect(), 2, "rpm"))),
-        (messages.radii_covered, of_arm(model, listed(radii.collect(), 4, "m"))),
+        (messages.speeds_covered, of_arm(model, listed(speeds.collect(), 2, language.live().rpm))),
+        (messages.radii_covered, of_arm(model, listed(radii.collect(), 4, &language.unit("m")))),
         (messages.plateaus_covered, (result.plateaus.len() - result.held_out().len()).to_string()),
         (messages.latitude, latitude.unwrap_or_default()),
     ]
