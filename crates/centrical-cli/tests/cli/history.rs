@@ -166,20 +166,17 @@ fn what_is_read_is_not_written() {
         let said = message.contains(&format!("{output}: found an input of the same command ("));
         assert!(said && message.contains(&format!("{input})")), "{message}");
     };
-    // The table of a series is the table of plateaus; its list is the same file by another name.
-    for (plateaus, output) in [("series.csv", "series.csv"), ("plateaus.csv", "series.jsonl")] {
-        fs::write(session.join("experiment.toml"), text.replace("plateaus.csv", plateaus)).unwrap();
-        fs::write(session.join(plateaus), &table).unwrap();
-        if output != plateaus {
-            fs::hard_link(session.join(plateaus), session.join(output)).unwrap();
-        }
-        refused(&["series", &names[0], "--out", &names[0]], &format!("{}/{output}", names[0]), plateaus);
-        assert!(fs::read(session.join(plateaus)).unwrap() == table);
-        fs::remove_file(session.join(output)).unwrap();
+    // The table of a series, or its list, is the table of plateaus by another name.
+    fs::write(session.join("experiment.toml"), &text).unwrap();
+    fs::create_dir(folder.path().join("out")).unwrap();
+    for name in ["series.csv", "series.jsonl"] {
+        let output = folder.path().join("out").join(name);
+        fs::hard_link(session.join("plateaus.csv"), &output).unwrap();
+        refused(&["series", &names[0], "--out", "out"], &format!("out/{name}"), "plateaus.csv");
+        assert!(fs::read(session.join("plateaus.csv")).unwrap() == table);
+        fs::remove_file(output).unwrap();
     }
     // What a killed writer left in a store is removed by the next one.
-    fs::write(session.join("experiment.toml"), &text).unwrap();
-    fs::write(session.join("plateaus.csv"), &table).unwrap();
     assert!(run(folder.path(), &["calibrate", &names[0], "--out", "a", "--store", "store", "-q"]).status.success());
     fs::hard_link(session.join("plateaus.csv"), store.join("rows/left.tmp")).unwrap();
     refused(&["calibrate", &names[0], "--out", "b", "--store", "store"], "store/rows/left.tmp", "plateaus.csv");

@@ -105,7 +105,7 @@ fn a_drifting_session_is_said_to_drift() {
     }
 }
 
-/// Times in ms taken for s: the means are right, and nothing in the readings turns with the arm.
+/// Times in hundredths of a second taken for s, which the ramps do not show: the means are right, and nothing in the readings turns with the arm.
 #[test]
 fn times_in_another_unit_show_no_revolution() {
     let copy = Copy::new();
@@ -115,7 +115,7 @@ fn times_in_another_unit_show_no_revolution() {
     });
     for mounting in 1..=12 {
         let scaled = |line: &str| match line.split_once(',').map(|(t, rest)| (t.parse::<f64>(), rest)) {
-            Some((Ok(t), rest)) => format!("{},{rest}\n", 1000.0 * t),
+            Some((Ok(t), rest)) => format!("{},{rest}\n", 100.0 * t),
             _ => format!("{line}\n"),
         };
         copy.edit(&format!("records/m{mounting:02}.csv"), |text| text.lines().map(scaled).collect());

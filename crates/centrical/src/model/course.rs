@@ -60,7 +60,7 @@ impl Course {
             Self::Speed => ("m/s", BIAS / square.sqrt(), false, "|Omega|"),
             Self::SquaredSpeed => ("m", BIAS / square, false, "Omega^2"),
             Self::FourthPowerOfSpeed => ("m s^2", BIAS / square.powi(2), false, "Omega^4"),
-            Self::OwnRate => ("m/s", BIAS / square.sqrt(), false, "Omega_i, about the own axis"),
+            Self::OwnRate => ("m/s", BIAS / square.sqrt(), false, "Omega_i"),
             Self::Yield => ("s^2", 5e-4 / Law::Load.full_scale(), false, "-M_ii f_i"),
             Self::Time => ("m/s^2", BIAS, true, "t"),
             Self::Wander(_) => ("m/s^2", BIAS, true, "P_1(2t), P_2(2t), P_3(2t)"),
