@@ -65,8 +65,8 @@ pub(crate) const ENGLISH: Messages = Messages {
     further_patterns: "further patterns:",
     worst_mounting: "Worst of the mountings, each predicted from all others",
     steadiness: "Steadiness",
-    steadiness_note: "How the readings moved within plateaus and over the session, with standard uncertainties; what \
-        comes by chance less often than once in a thousand is said to be there.",
+    steadiness_note: "How the readings moved within plateaus and over the session, with standard uncertainties. A \
+        change is reported if its probability by chance is below 0.001.",
     tilt_note: "The once-per-revolution term, which is not fitted, gives the tilt of the axis of rotation beside the \
         fitted one.",
     drift_over_plateau: "Drift over a plateau, mean",

@@ -60,8 +60,9 @@ pub fn objections_text(objections: &[ResultObjection]) -> Screen {
 pub fn exact_text(result: &CalibrationResult) -> Screen {
     let mut screen = Screen::default();
     if let Some(exact) = counts_as_exact(result, Language::English) {
-        let words =
-            format!("{exact}: U in the certificate holds nothing of them; [uncertainty] of the session states them");
+        let words = format!(
+            "{exact}: U of the certificate contains no contribution of these; state them under [uncertainty] of the session"
+        );
         screen.marked(Emphasis::Warning, "COUNT AS EXACT", &words);
     }
     screen
