@@ -11,11 +11,11 @@ pub(crate) fn converted(value: f64) -> f64 {
 }
 
 /// A positive number cut to `digits` significant digits, without zeros at its end: what holds up to it holds up to this one.
-pub(crate) fn rounded_down(value: f64, digits: usize) -> String {
+pub(crate) fn rounded_down(value: f64, digits: u8) -> String {
     let value = converted(value);
-    let (shown, power) = scientific(value, digits);
+    let (shown, power) = scientific(value, digits.into());
     let rounded: f64 = format!("{shown}e{power}").parse().unwrap_or(value);
-    let step: f64 = format!("1e{}", power + 1 - digits as i32).parse().unwrap_or(0.0);
+    let step: f64 = format!("1e{}", power + 1 - i32::from(digits)).parse().unwrap_or(0.0);
     let cut = if rounded > value { rounded - step } else { rounded };
     converted(cut).to_string()
 }

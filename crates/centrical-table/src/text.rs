@@ -127,7 +127,7 @@ impl TextReader {
             for (piece, rows) in pieces.iter_mut().zip(&*rows) {
                 if let Some(backwards) = before.next(rows, fields) {
                     let stamp = piece.stamp_kind(piece.first_row, layout);
-                    return Err(located(file, *line + piece.first_row, Fault::of(backwards, fields, stamp)));
+                    return Err(located(file, *line + piece.first_row, Fault::of(&backwards, fields, stamp)));
                 }
                 if let Some((at, fault)) = piece.fault.take() {
                     return Err(located(file, *line + at, fault));

@@ -48,9 +48,9 @@ fn methods(xml: &mut Xml, result: &CalibrationResult, laboratory: &Laboratory, l
             xml.content("dcc:name", messages.method, language);
             let deviations = laboratory.method.deviations.as_deref().unwrap_or(messages.none);
             let covered = covered(result, language).into_iter().filter(|(_, text)| !text.is_empty());
-            let covered: String = covered.map(|(name, text)| format!(" {name}: {text}.")).collect();
-            let text =
-                format!("{} {}: {deviations}.{covered}", method_text(&result.model, language), messages.deviations);
+            let covered: Vec<String> = covered.map(|(name, text)| format!(" {name}: {text}.")).collect();
+            let method = method_text(&result.model, language);
+            let text = format!("{method} {}: {deviations}.{}", messages.deviations, covered.concat());
             xml.content("dcc:description", &text, language);
             xml.optional("dcc:reference", laboratory.method.procedure.as_deref());
         });

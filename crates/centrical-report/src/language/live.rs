@@ -13,7 +13,7 @@ pub(crate) struct LiveMessages {
     pub silent: &'static str,
     /// Before the name of a file.
     pub waiting_for: &'static str,
-    /// Of which time a page without scripts is.
+    /// The time that a page without scripts shows.
     pub as_of: fn(&str) -> String,
     pub no_connection: &'static str,
     pub frozen: &'static str,

@@ -23,7 +23,7 @@ impl Fault {
     }
 
     /// A value that is below the one before it, in a row whose first field is that stamp.
-    pub fn of(backwards: Backwards, fields: &[Field], stamp: Option<StampKind>) -> Self {
+    pub fn of(backwards: &Backwards, fields: &[Field], stamp: Option<StampKind>) -> Self {
         let is_of_day = backwards.field == 0 && stamp == Some(StampKind::TimeOfDay);
         fields[backwards.field].fault(backwards.found(), &backwards.expected(is_of_day))
     }

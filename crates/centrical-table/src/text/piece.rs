@@ -201,7 +201,7 @@ impl Piece {
             {
                 let backwards = Backwards { field: k, value: column[row + 1], before: column[row] };
                 let line = self.line_of(row + 1, skipped);
-                self.fault = Some((line, Fault::of(backwards, fields, self.stamp_kind(line, layout))));
+                self.fault = Some((line, Fault::of(&backwards, fields, self.stamp_kind(line, layout))));
             }
         }
     }

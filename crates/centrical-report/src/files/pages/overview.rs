@@ -62,9 +62,12 @@ pub struct Overview {
     pub pages: BTreeMap<String, String>,
     /// Keys of the calibrations of each unit that has a page, by its file.
     pub units: BTreeMap<String, BTreeSet<String>>,
-    /// The limit that units may be due for, if there is one [m/s^2], and all units as they are listed, with the file of the page where a unit has one.
-    pub with_limit: Option<(f64, Vec<(Option<String>, ListedUnit)>)>,
+    /// The limit that units may be due for, if there is one [m/s^2], and all units.
+    pub with_limit: Option<(f64, WithPage)>,
 }
+
+/// Units as they are listed, with the file of the page where one has a page.
+type WithPage = Vec<(Option<String>, ListedUnit)>;
 
 impl Overview {
     /// The list of due dates, by the page of each unit or its beginning; `None` without a limit, or where a page does not say.

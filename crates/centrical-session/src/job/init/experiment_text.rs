@@ -31,7 +31,9 @@ pub(super) fn draft(
     let mountings = mountings.as_slice();
     let mut draft = Draft::default();
     heading(&mut draft, mountings);
-    unused.iter().for_each(|error| draft.unused(&error.to_string()));
+    for error in unused {
+        draft.unused(&error.to_string());
+    }
     draft.line("");
     session(&mut draft, tumbled);
     unit(&mut draft, &findings.unit, tumbled);

@@ -93,7 +93,7 @@ fn length(times: &[f64]) -> f64 {
     times.last().zip(times.first()).map_or(0.0, |(last, first)| last - first)
 }
 
-/// The files with the unit of a time that the file names none of, where the record lasts so many times as long as its telemetry as another
+/// The files with a unit for a time that has none in the file, where the record lasts so many times as long as its telemetry as another
 /// unit, or a count of samples, explains.
 fn in_unit_of_time(group: &Group, ratio: f64) -> Option<Group> {
     const UNITS: [&str; 5] = ["ms", "us", "ns", "min", "h"];

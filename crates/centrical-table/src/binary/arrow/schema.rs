@@ -22,9 +22,12 @@ pub(super) struct ArrowColumn {
     pub node: usize,
     pub buffer: usize,
     scalar: Scalar,
-    /// How they are counted if they are stamps, dates or times of the day, and ticks that one stands for.
-    pub stamps: Option<(TickForm, i64)>,
+    /// How its values are counted.
+    pub stamps: Stamps,
 }
+
+/// How values are counted that are stamps, dates or times of the day, and the ticks of one of them.
+type Stamps = Option<(TickForm, i64)>;
 
 /// Deepest nesting of types, and most of them in all: a damaged schema may contain itself.
 const LIMITS: Limits = Limits { depth: 32, count: 1 << 16 };
@@ -92,7 +95,7 @@ impl ArrowColumn {
 type Flat<T> = Result<T, polars_arrow_format::ipc::planus::Error>;
 
 /// The numbers of a column, and how they are counted if they are stamps; or what it is if it is neither numbers nor, where allowed, stamps.
-fn numbers(column: &FieldRef, rule: Rule, big_endian: bool) -> Flat<Result<(Scalar, Option<(TickForm, i64)>), String>> {
+fn numbers(column: &FieldRef, rule: Rule, big_endian: bool) -> Flat<Result<(Scalar, Stamps), String>> {
     let described = || Ok(Err("a column without numbers".to_owned()));
     let (Some(kind), None) = (column.type_()?, column.dictionary()?) else { return described() };
     let (kind, bits, stamps) = match kind {
