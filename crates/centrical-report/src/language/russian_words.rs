@@ -30,7 +30,7 @@ pub(super) fn standard_uncertainties(number: &str) -> String {
 pub(super) fn group(group: Group) -> &'static str {
     match group {
         Group::Bias => "Смещение нуля",
-        Group::Scale => "Масштабный коэффициент",
+        Group::Scale => "Погрешность масштаба",
         Group::Misalignment => "Перекос оси",
         Group::Quadratic => "Квадратичный член",
         Group::Cubic => "Кубичный член",

@@ -8,7 +8,7 @@ use crate::statistics::{PIECE, Side, cut, spread, watched_median, widened};
 /// A reading is compared with the median of the two on either side of it, which one more spike among them does not
 /// move. The limit is what fewer than one in twenty records of good readings exceed anywhere, `sqrt(2 ln 20 n)` robust
 /// standard deviations, which allow for the last digit. Noise slower than a few samples does not enter the comparison, and
-/// so is not cut. A tail that falls off as an exponential does is noise, and stays ([`widened`]). `progress` is asked again and again.
+/// so is not cut. A tail that falls off as an exponential does is noise, and stays (`widened`). `progress` is asked again and again.
 ///
 /// # Errors
 /// [`Stopped`] when the caller stops it; no reading is marked then.
