@@ -349,6 +349,11 @@ fn counts_need_no_data_sheet() {
         refusal.contains("found a unit without a serial number, expected the serial number under [unit]"),
         "{refusal}"
     );
+    // Where other documents are asked for as well, they are written.
+    let run = copy.run(&[&tumble[..], &["kept", "--laboratory", &laboratory]].concat());
+    let is_there = |name: &str| copy.out().join("kept").join(name).exists();
+    assert_eq!(run.status.code(), Some(2), "{}", said(&run));
+    assert_eq!(["result.json", "report.html", "certificate.pdf"].map(is_there), [true, true, false]);
 }
 
 #[test]

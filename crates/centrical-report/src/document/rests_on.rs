@@ -38,7 +38,7 @@ pub(super) fn all_rests_on(result: &CalibrationResult, language: Language) -> Ve
     vec![Block::heading(language.messages().all_rests_on, 4), Block::Table(table(result, ROWS, language))]
 }
 
-/// The quantities that count as exact, `None` if there are none.
+/// The quantities that count as exact, by name; `None` where all are stated.
 pub(crate) fn counts_as_exact(result: &CalibrationResult, language: Language) -> Option<String> {
     let exact = exact(result);
     (!exact.is_empty()).then(|| named(exact, language))

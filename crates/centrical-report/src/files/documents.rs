@@ -176,9 +176,6 @@ pub fn write_all_documents(
     language: Language,
     folder: &Path,
 ) -> Result<(), Error> {
-    if issuer.is_some() {
-        refuse_unnamed_item(result, &folder.join("result.json"))?;
-    }
     let unit = issuer.and_then(|issuer| issuer.unit.as_ref());
     let drawn = figures(result, language);
     let report = html(&report(result, unit, None, drawn.clone(), language));
@@ -210,6 +207,7 @@ fn certificates(
     folder: &Path,
 ) -> Result<[(PathBuf, Vec<u8>); 2], Error> {
     let file = folder.join(RESULT);
+    refuse_unnamed_item(result, &file)?;
     let dcc = dcc(result, issuer, language, &file)?;
     let certificate = with_attachment(certificate(result, None, issuer, language), Some(&dcc));
     let certificate = printed(&certificate, issuer, &file)?;

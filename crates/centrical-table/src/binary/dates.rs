@@ -48,7 +48,7 @@ fn stamps(mut date: Column, mut time: Column) -> Column {
             let count = days.0.len().max(times.0.len());
             let seconds = |row: usize| Some(days.0.get(row)? + times.0.get(row)?).filter(|seconds| !seconds.is_nan());
             values.extend((0..count).map(|row| seconds(row).unwrap_or(MISSING)));
-            // Rows without a value have no ticks: nothing says then of which rows the others are.
+            // A row without a value has no ticks, and the rows of the other ticks are then unknown.
             if [&days.1, &times.1].iter().all(|ticks| ticks.len() == count) {
                 let instant =
                     |(day, time): (&i64, &i64)| day.checked_mul(of_date)?.checked_add(time.checked_mul(of_time)?);

@@ -93,8 +93,8 @@ fn length(times: &[f64]) -> f64 {
     times.last().zip(times.first()).map_or(0.0, |(last, first)| last - first)
 }
 
-/// The files with a unit for a time that has none in the file, where the record lasts so many times as long as its telemetry as another
-/// unit, or a count of samples, explains.
+/// The files with a unit of time where they state none. `ratio` is the length of the record over that of its telemetry: a unit that explains it,
+/// or a count of samples, is taken.
 fn in_unit_of_time(group: &Group, ratio: f64) -> Option<Group> {
     const UNITS: [&str; 5] = ["ms", "us", "ns", "min", "h"];
     /// Record and telemetry begin and end together, but for a tenth.

@@ -24,7 +24,7 @@ pub(super) fn check(
     let Some(tangential_z) = per_acceleration(schedule) else { return Ok(()) };
     let ramps: Vec<Ramp> =
         (1..cores.len()).filter_map(|k| Ramp::seen(blocks, schedule, cores, k, &tangential_z)).collect();
-    let log_odds: f64 = ramps.iter().map(|ramp| (ramp.off_expected / ramp.off_reversed).ln()).sum();
+    let log_odds: f64 = ramps.iter().map(|ramp| (ramp.off_expected / ramp.off(-1.0)).ln()).sum();
     let (product, square) = ramps.iter().fold((0.0, 0.0), |(p, s), ramp| (p + ramp.product, s + ramp.square));
     let (ramps_seen, part) = (ramps.len(), product / square);
     if log_odds >= -ODDS.ln() {
@@ -50,18 +50,19 @@ fn per_acceleration(schedule: &[ScheduledPlateau]) -> Option<Vector3<f64>> {
 
 /// The evidence of a ramp.
 struct Ramp {
-    /// Sums of squares less the expected, and less the reversed tangential part [m^2/s^4].
+    /// Sum of squares less the expected tangential part [m^2/s^4].
     off_expected: f64,
-    off_reversed: f64,
     /// Product of the readings with the expected part, and its square [m^2/s^4].
     product: f64,
     square: f64,
 }
 
 impl Ramp {
-    /// Sum of squares less so many times the expected tangential part: time runs so many times as fast as it is taken to.
+    /// Sum of squares less `factor` times the expected tangential part: -1 for the other sense, 1000 for time in ms taken for s. Rounding leaves
+    /// no less than nothing of a ramp that fits.
     fn off(&self, factor: f64) -> f64 {
-        self.off_expected + 2.0 * (1.0 - factor) * self.product + (factor * factor - 1.0) * self.square
+        let off = self.off_expected + 2.0 * (1.0 - factor) * self.product + (factor * factor - 1.0) * self.square;
+        off.max(f64::MIN_POSITIVE)
     }
 
     /// The ramp before plateau `k`; `None` if the speed does not change or changes its sign.
@@ -81,17 +82,16 @@ impl Ramp {
         let part = |i: usize| (blocks.f_z[i] - from).dot(&way) / way.norm_squared();
         let square = |i: usize| before * before + part(i).clamp(0.0, 1.0) * (after * after - before * before);
         let omega = |i: usize| (before + after).signum() * square(i).sqrt();
-        let mut ramp = Self { off_expected: 0.0, off_reversed: 0.0, product: 0.0, square: 0.0 };
+        let mut ramp = Self { off_expected: 0.0, product: 0.0, square: 0.0 };
         for i in cores[k - 1].end..cores[k].start.min(blocks.len() - 1) {
             let (previous, next) = (i.checked_sub(1)?, i + 1);
             let acceleration = (omega(next) - omega(previous)) / (blocks.t[next] - blocks.t[previous]);
             let expected = tangential_z * acceleration;
             let across = blocks.f_z[i] - from - way * part(i);
             ramp.off_expected += (across - expected).norm_squared();
-            ramp.off_reversed += (across + expected).norm_squared();
             ramp.product += across.dot(&expected);
             ramp.square += expected.norm_squared();
         }
-        (ramp.off_expected > 0.0 && ramp.off_reversed > 0.0).then_some(ramp)
+        (ramp.off_expected > 0.0).then_some(ramp)
     }
 }
