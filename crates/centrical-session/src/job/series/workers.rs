@@ -69,14 +69,15 @@ impl Workers<'_> {
 
     /// One thread: session after session, to the last.
     fn work(&self, sessions: &[&Path], next: &AtomicUsize, stop: &AtomicBool, send: &SyncSender<(usize, Done)>) {
-        let pool = ThreadPoolBuilder::new().num_threads(1).build();
+        // This thread is the whole pool. The shared one may consist of the thread that writes, which would never compute.
+        let pool = ThreadPoolBuilder::new().num_threads(1).use_current_thread().build();
         let progress =
             |_| if stop.load(Ordering::Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };
         while progress(0_u64).is_continue() {
             let number = next.fetch_add(1, Ordering::Relaxed);
             let Some(session) = sessions.get(number) else { break };
             let one = || calibrated(session, self.request, &self.writing, &progress);
-            // If no pool can be made, all threads share the one there is.
+            // A thread of a caller that is in a pool already computes there.
             let done = pool.as_ref().map_or_else(|_| one(), |pool| pool.install(one));
             if done.is_none_or(|done| send.send((number, done)).is_err()) {
                 break;
