@@ -1,7 +1,9 @@
 //! Why a combination is lost, from the structure of the design: which newtonometer feels which of its terms, only in
 //! which sum, and what in the experiment would have to vary for them to part.
 
-use nalgebra::DVector;
+use std::ops::AddAssign;
+
+use nalgebra::{DMatrix, DVector};
 
 use super::addition::{Addition, positions_text};
 use super::combination::sum_text;
@@ -244,7 +246,8 @@ fn change_by_term(direction: &NullDirection, linearisation: &Linearisation, newt
     changes
 }
 
-/// Whether any plateau of `extended` feels a change along the direction, whose indices are those of `model`.
+/// Whether any plateau of `extended` feels a change along the direction, whose indices are those of `model`, that the unknowns which came
+/// with the extension cannot make up: another mounting may have a shift of its own.
 fn feels(extended: &MeasurementModel, study: &Study, direction: &NullDirection, model: &MeasurementModel) -> bool {
     let named =
         |&(j, component): &(usize, f64)| Some((extended.parameters().find(&model.parameters()[j].name)?, component));
@@ -252,7 +255,42 @@ fn feels(extended: &MeasurementModel, study: &Study, direction: &NullDirection, 
     let changes: Vec<DVector<f64>> =
         study.linearisations().iter().flat_map(|l| (0..3).map(|i| change_by_term(&direction, l, i))).collect();
     let largest = changes.iter().map(nalgebra::Matrix::amax).fold(0.0, f64::max);
-    changes.iter().any(|change| change.sum().abs() > NO_CHANGE * largest)
+    let change = DVector::from_iterator(changes.len(), changes.iter().map(nalgebra::Matrix::sum));
+    let is_new = |j: &usize| model.parameters().find(&extended.parameters()[*j].name).is_none();
+    let new: Vec<usize> = (0..extended.parameters().len()).filter(is_new).collect();
+    beyond(change, &readings_by(&new, study)).amax() > NO_CHANGE * largest
+}
+
+/// Readings of all plateaus per unit of some unknowns, columns of unit length; those that none of them changes are zeros.
+fn readings_by(unknowns: &[usize], study: &Study) -> DMatrix<f64> {
+    let mut columns = DMatrix::zeros(3 * study.linearisations().len(), unknowns.len());
+    for (n, linearisation) in study.linearisations().iter().enumerate() {
+        for (column, derivative) in &linearisation.columns {
+            if let Ok(k) = unknowns.binary_search(column) {
+                columns.fixed_view_mut::<3, 1>(3 * n, k).add_assign(derivative);
+            }
+        }
+    }
+    columns.column_iter_mut().for_each(|mut column| {
+        column.try_normalize_mut(0.0);
+    });
+    columns
+}
+
+/// The part of `b` that no combination of `columns` of unit length makes up.
+fn beyond(b: DVector<f64>, columns: &DMatrix<f64>) -> DVector<f64> {
+    /// What rounding leaves of a combination of columns that make each other up.
+    const ROUNDING: f64 = 1e-10;
+    if columns.is_empty() {
+        return b;
+    }
+    let svd = columns.clone().svd(true, false);
+    let Some(u) = svd.u else { return b };
+    let independent = u.column_iter().zip(&svd.singular_values).filter(|(_, length)| **length > ROUNDING);
+    independent.fold(b, |left, (direction, _)| {
+        let along = left.dot(&direction);
+        left - direction * along
+    })
 }
 
 /// Equal terms with coefficients equal to rounding.
