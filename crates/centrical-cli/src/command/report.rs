@@ -147,6 +147,8 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let text = || {
         let mut screen = objections_text(&objections);
         screen.add(unit.as_ref().filter(|_| !is_within).map(unit_text).unwrap_or_default());
+        let written: Vec<String> = request.written().iter().map(|(_, path)| path.display().to_string()).collect();
+        screen.say(0, &format!("Written to {}", written.join(", ")));
         screen
     };
     let within = unit.as_ref().map(UnitStatement::is_within);
