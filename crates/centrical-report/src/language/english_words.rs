@@ -202,6 +202,15 @@ pub(super) fn rival(rival: Rival) -> &'static str {
             Extension::Disturbance(Course::TimeScale) => "scale that changes over the session",
             Extension::Disturbance(Course::WarmUp) => "bias that warms up in each mounting",
             Extension::Disturbance(Course::WarmUpScale) => "scale that warms up in each mounting",
+            Extension::Disturbance(Course::Heat(Law::Speed)) => {
+                "bias with the heat that a mounting gathers, by the speed"
+            }
+            Extension::Disturbance(Course::Heat(Law::Load)) => {
+                "bias with the heat that a mounting gathers, by the load"
+            }
+            Extension::Resonance(_) | Extension::Disturbance(Course::AtSpeedOf(_)) => {
+                "disturbance at one set speed: vibration in resonance"
+            }
             Extension::Disturbance(Course::Rise) => "difference after a rise and after a fall of the speed",
             Extension::Disturbance(Course::Memory) => "memory of earlier forces",
             Extension::Disturbance(Course::Turn) => "hysteresis: a bias by the sense of the last change of the force",

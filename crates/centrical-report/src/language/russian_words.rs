@@ -206,6 +206,15 @@ pub(super) fn rival(rival: Rival) -> &'static str {
             Extension::Disturbance(Course::TimeScale) => "изменение масштаба за время эксперимента",
             Extension::Disturbance(Course::WarmUp) => "прогрев: изменение нуля от начала каждой установки",
             Extension::Disturbance(Course::WarmUpScale) => "прогрев: изменение масштаба от начала каждой установки",
+            Extension::Disturbance(Course::Heat(Law::Speed)) => {
+                "изменение нуля с теплом, накопленным в установке, по скорости"
+            }
+            Extension::Disturbance(Course::Heat(Law::Load)) => {
+                "изменение нуля с теплом, накопленным в установке, по нагрузке"
+            }
+            Extension::Resonance(_) | Extension::Disturbance(Course::AtSpeedOf(_)) => {
+                "возмущение на одной заданной скорости: вибрация в резонансе"
+            }
             Extension::Disturbance(Course::Rise) => "различие после роста и после спада скорости",
             Extension::Disturbance(Course::Memory) => "память о прежних силах",
             Extension::Disturbance(Course::Turn) => "гистерезис: нуль по знаку последнего изменения силы",
@@ -222,7 +231,7 @@ pub(super) fn rival(rival: Rival) -> &'static str {
 }
 
 /// Words in the formulas of rivals.
-const OF_FORMULAS: [(&str, &str); 18] = [
+const OF_FORMULAS: [(&str, &str); 19] = [
     ("by position", "по положениям"),
     ("by seat", "по посадочным местам"),
     ("by mounting", "по установкам"),
@@ -234,6 +243,7 @@ const OF_FORMULAS: [(&str, &str); 18] = [
     ("while spinning", "при вращении"),
     ("those taken as exact", "принятые за точные"),
     ("where", "при"),
+    ("over plateaus of the mounting", "по площадкам установки"),
     ("on plateau n of a mounting", "на площадке n установки"),
     ("after a rise of", "после роста"),
     ("after a fall", "после спада"),
@@ -325,6 +335,7 @@ mod tests {
     fn formulas_have_no_english_words() {
         let single = [
             Extension::OneSpeed(0),
+            Extension::Resonance(0),
             Extension::Disturbance(Course::From(1)),
             Extension::OneMounting(Difference::Shift, 0),
             Extension::OneMounting(Difference::Turn, 0),

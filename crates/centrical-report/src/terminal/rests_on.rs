@@ -39,6 +39,12 @@ fn protection(effect: &RestsOn) -> String {
     if let Some(Rival::Effect(Extension::OneSpeed(_))) = effect.rival() {
         return "protect: measure the speeds (measured under [centrifuge])".to_owned();
     }
+    if let Some(Rival::Effect(Extension::Resonance(_))) = effect.rival() {
+        return match effect.price_as_unknown {
+            Some(price) => format!("protect: {change}, at {price:.2} times the uncertainty of {}", effect.parameter),
+            None => "protect: leave out the plateaus at that speed".to_owned(),
+        };
+    }
     if let Some(Rival::Effect(Extension::Disturbance(Course::From(_)))) = effect.rival() {
         return "Repeating earlier attitudes would reveal a smaller step.".to_owned();
     }

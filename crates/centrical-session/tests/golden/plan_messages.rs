@@ -66,7 +66,7 @@ fn extensions_and_priors() {
             (
                 "arm-stretch-speed",
                 "arm-stretch",
-                "[model], extensions: found \"arm-stretch\", expected one of elastic-turn-speed, elastic-turn-load, arm-stretch-speed, arm-stretch-load, seat-stretch-speed, seat-stretch-load, radius-scale, speed-scale, speed-offset, earth-rate, gravity, arm-turn-speed, arm-turn-load, seat-radius, seat-lateral, position-shift, mounting-shift, mounting-turn, mounting-tilt, angle-tilt, mounting-bias, mounting-scale, rests-bias, rests-scale, rests-unit, rests-tilt, attitudes-tilt, spin-turn, proof-masses, spin-step, spin-speed, spin-square, spin-fourth, own-rate, yield, bias-drift, bias-wander, scale-drift, warm-up, warm-up-scale, rise-fall, memory, hysteresis",
+                "[model], extensions: found \"arm-stretch\", expected one of elastic-turn-speed, elastic-turn-load, arm-stretch-speed, arm-stretch-load, seat-stretch-speed, seat-stretch-load, radius-scale, speed-scale, speed-offset, earth-rate, gravity, arm-turn-speed, arm-turn-load, seat-radius, seat-lateral, position-shift, mounting-shift, mounting-turn, mounting-tilt, angle-tilt, mounting-bias, mounting-scale, rests-bias, rests-scale, rests-unit, rests-tilt, attitudes-tilt, spin-turn, proof-masses, spin-step, spin-speed, spin-square, spin-fourth, own-rate, yield, bias-drift, bias-wander, scale-drift, warm-up, warm-up-scale, heating-speed, heating-load, rise-fall, memory, hysteresis",
             ),
             (
                 "[\"arm-stretch-speed\"]",

@@ -415,6 +415,7 @@ fn an_extension_needs_what_it_is_of() {
         ("bias-step[5]", 2, 4),
         ("bias-step[1]", 2, 4),
         ("one-speed[2]", 1, 1),
+        ("resonance[2]", 1, 1),
         ("other-unit[3]", 1, 2),
         ("one-mounting-turn[99]", 1, 2),
     ] {

@@ -32,6 +32,11 @@ pub enum Course {
     WarmUpScale,
     /// +1 after a rise of the speed, -1 after a fall.
     Rise,
+    /// Heat that a mounting has gathered: the power of a drag that grows with the law, `|Omega|` times the law, summed over its plateaus
+    /// before and half of this one, over that at full scale. A machine cools while the unit is mounted anew.
+    Heat(Law),
+    /// 1 on the plateaus with the set speed of the plateau of that index: vibration in resonance.
+    AtSpeedOf(usize),
     /// The specific force of the plateaus before, each half as much as the next.
     Memory,
     /// Sense of the change of `f_i` since the plateau before, `d / hypot(d, 0.05 g)`: hysteresis.
@@ -69,6 +74,9 @@ impl Course {
             Self::WarmUp => ("m/s^2", BIAS, true, "2^-n on plateau n of a mounting"),
             Self::WarmUpScale => ("1", 1e-3, true, "2^-n f_i on plateau n of a mounting"),
             Self::Rise => ("m/s^2", BIAS, true, "+1 after a rise of Omega, -1 after a fall"),
+            Self::Heat(Law::Speed) => ("m/s^2", BIAS, true, "sum |Omega|^3 over plateaus of the mounting"),
+            Self::Heat(Law::Load) => ("m/s^2", BIAS, true, "sum |Omega|^3 |R0_1| over plateaus of the mounting"),
+            Self::AtSpeedOf(_) => ("m/s^2", BIAS, false, "1 at one set speed"),
             Self::Memory => ("1", 1e-3, true, "sum_n 2^-n f_i, n plateaus before"),
             Self::Turn => ("m/s^2", BIAS, true, "+1 after a rise of f_i, -1 after a fall"),
         };
@@ -93,6 +101,11 @@ impl Course {
             Self::WarmUp => history.warm_up,
             Self::WarmUpScale => history.warm_up * f0(),
             Self::Rise => history.rise,
+            Self::Heat(Law::Speed) => history.heat,
+            Self::Heat(Law::Load) => {
+                history.heat * Law::Speed.full_scale() * experiment.arm_of(set_point).x.abs() / Law::Load.full_scale()
+            }
+            Self::AtSpeedOf(first) => f64::from(u8::from(experiment.set_points[first].has_speed(set_point.omega))),
             Self::Memory => history.memory[axis],
             Self::Turn => history.turn[axis],
         }

@@ -122,6 +122,8 @@ pub struct History {
     pub time: f64,
     /// The remainder of a warm-up: 1 on the first plateau of a mounting on the arm, and half of the preceding value on each further one.
     pub warm_up: f64,
+    /// Sum of `|Omega|^3` over the plateaus of the mounting before, and half of it on this one, over that of 10 rev/s.
+    pub heat: f64,
     /// +1 after a rise of the speed, -1 after a fall, 0 before the first.
     pub rise: f64,
     /// Nominal specific force of the plateaus before, each half as much as the next [m/s^2].

@@ -76,6 +76,8 @@ pub enum Extension {
     Disturbance(Course),
     /// Biases that wander over the session: polynomials of first to third degree in the order of the plateaus, nine unknowns.
     BiasWander,
+    /// A disturbance at one set speed, one per newtonometer, by the index of the speed as in [`Extension::OneSpeed`].
+    Resonance(usize),
     /// One mounting, by its index, that differs from the others.
     OneMounting(Difference, usize),
     /// One set speed that is off, by its index among them, the lowest first ([`Experiment::set_speeds`]).
@@ -95,7 +97,7 @@ pub enum Difference {
 
 impl Extension {
     /// Every extension with its name as written in sessions and plans.
-    pub const NAMED: [(&'static str, Self); 43] = [
+    pub const NAMED: [(&'static str, Self); 45] = [
         ("elastic-turn-speed", Self::ElasticTurn(Law::Speed)),
         ("elastic-turn-load", Self::ElasticTurn(Law::Load)),
         ("arm-stretch-speed", Self::ArmStretch(Law::Speed)),
@@ -136,6 +138,8 @@ impl Extension {
         ("scale-drift", Self::Disturbance(Course::TimeScale)),
         ("warm-up", Self::Disturbance(Course::WarmUp)),
         ("warm-up-scale", Self::Disturbance(Course::WarmUpScale)),
+        ("heating-speed", Self::Disturbance(Course::Heat(Law::Speed))),
+        ("heating-load", Self::Disturbance(Course::Heat(Law::Load))),
         ("rise-fall", Self::Disturbance(Course::Rise)),
         ("memory", Self::Disturbance(Course::Memory)),
         ("hysteresis", Self::Disturbance(Course::Turn)),
@@ -151,6 +155,7 @@ impl Extension {
             let of_mounting = difference.map(|(_, difference)| Self::OneMounting(*difference, index));
             of_mounting.or(match stem {
                 ONE_SPEED => Some(Self::OneSpeed(index)),
+                RESONANCE => Some(Self::Resonance(index)),
                 BIAS_STEP => Some(Self::Disturbance(Course::From(index))),
                 _ => None,
             })
@@ -167,6 +172,9 @@ impl Extension {
         if let Self::OneSpeed(speed) = self {
             return format!("{ONE_SPEED}[{}]", speed + 1);
         }
+        if let Self::Resonance(speed) = self {
+            return format!("{RESONANCE}[{}]", speed + 1);
+        }
         if let Self::Disturbance(Course::From(first)) = self {
             return format!("{BIAS_STEP}[{}]", first + 1);
         }
@@ -177,7 +185,7 @@ impl Extension {
     pub fn numbers(self, experiment: &Experiment) -> Option<RangeInclusive<usize>> {
         match self {
             Self::OneMounting(..) => Some(1..=experiment.mountings_on_arm().count()),
-            Self::OneSpeed(_) => Some(1..=experiment.set_speeds().len()),
+            Self::OneSpeed(_) | Self::Resonance(_) => Some(1..=experiment.set_speeds().len()),
             Self::Disturbance(Course::From(_)) => Some(2..=experiment.set_points.len()),
             _ => None,
         }
@@ -263,14 +271,14 @@ impl Extension {
                 };
                 (1..=3).flat_map(of_degree).collect()
             }
-            Self::OneSpeed(speed) => {
-                let first = experiment.set_speeds().get(speed).map(|(first, _)| *first);
+            Self::OneSpeed(speed) => of_set_speed(experiment, speed, |first| {
                 let name = format!("one_speed[{}]", speed + 1);
-                first
-                    .map(|first| effect(name, "1", Group::SpeedScale, Effect::OneSpeed { first }, 1e-3))
-                    .into_iter()
-                    .collect()
-            }
+                vec![effect(name, "1", Group::SpeedScale, Effect::OneSpeed { first }, 1e-3)]
+            }),
+            Self::Resonance(speed) => of_set_speed(experiment, speed, |first| {
+                let name = |axis: usize| format!("resonance_{}[{}]", axis + 1, speed + 1);
+                three(|axis| disturbance(name(axis), axis, Course::AtSpeedOf(first)))
+            }),
             Self::OneMounting(_, mounting) if mounting >= experiment.mountings.len() => Vec::new(),
             Self::OneMounting(_, mounting) if !experiment.is_on_arm(mounting) => Vec::new(),
             Self::OneMounting(Difference::Shift, mounting) => {
@@ -284,7 +292,17 @@ impl Extension {
     }
 }
 
+/// Unknowns of a set speed, by the index of its first set point; none where the experiment has fewer speeds.
+fn of_set_speed(
+    experiment: &Experiment,
+    speed: usize,
+    unknowns: impl FnOnce(usize) -> Vec<Parameter>,
+) -> Vec<Parameter> {
+    experiment.set_speeds().get(speed).map_or_else(Vec::new, |(first, _)| unknowns(*first))
+}
+
 /// Names of the extensions of one set speed and of one plateau, before its number.
+const RESONANCE: &str = "resonance";
 const ONE_SPEED: &str = "one-speed";
 const BIAS_STEP: &str = "bias-step";
 

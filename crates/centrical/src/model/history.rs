@@ -4,6 +4,7 @@ use std::collections::HashMap;
 
 use nalgebra::Vector3;
 
+use super::course::Law;
 use super::experiment::{Experiment, History, STANDARD_GRAVITY, SetPoint};
 
 /// The part of a plateau's force, or of a warm-up, that is left on the next.
@@ -13,7 +14,7 @@ const REMEMBERED: f64 = 0.5;
 pub(super) fn fill(experiment: &mut Experiment) {
     let last = experiment.set_points.len().saturating_sub(1).max(1) as f64;
     let (mut memory, mut rise, mut previous, mut force) = (Vector3::zeros(), 0.0, None, None);
-    let mut warm_up = 0.0;
+    let (mut warm_up, mut heat) = (0.0, 0.0);
     for n in 0..experiment.set_points.len() {
         let set_point = experiment.set_points[n];
         let speed = set_point.omega.abs();
@@ -30,6 +31,9 @@ pub(super) fn fill(experiment: &mut Experiment) {
             None => 1.0,
             Some(_) => REMEMBERED * warm_up,
         };
+        let gathered = before.map_or(0.0, |_| heat);
+        let given = speed.powi(3) / Law::Speed.full_scale().powf(1.5);
+        heat = gathered + given;
         previous = Some((set_point.mounting, speed));
         let here = experiment.nominal(&set_point);
         // A unit that is mounted on the arm has been turned on the way there.
@@ -37,7 +41,8 @@ pub(super) fn fill(experiment: &mut Experiment) {
         let turn = force.filter(|_| is_known).map_or(Vector3::zeros(), |force: Vector3<f64>| (here - force).map(sense));
         force = Some(here);
         let time = n as f64 / last - 0.5;
-        experiment.set_points[n].history = History { time, warm_up, rise, memory, turn, repeats: None };
+        experiment.set_points[n].history =
+            History { time, warm_up, heat: gathered + given / 2.0, rise, memory, turn, repeats: None };
         memory = (memory + here) * REMEMBERED;
     }
     mark_repeated_rests(&mut experiment.set_points);

@@ -101,9 +101,9 @@ impl MeasurementModel {
         let count = self.experiment.mountings_on_arm().count();
         let mountings = self.experiment.mountings_on_arm().filter(|_| count <= MOST_SINGLE).flat_map(of_mounting);
         let speeds = self.experiment.set_speeds();
-        let of_speed = |k: usize| Rival::Effect(Extension::OneSpeed(k));
+        let of_speed = |k: usize| [Extension::OneSpeed(k), Extension::Resonance(k)].map(Rival::Effect);
         let is_asked = |k: &usize| speeds.len() <= MOST_SINGLE && speeds[*k].1 > 1;
-        let speeds = (0..speeds.len()).filter(is_asked).map(of_speed);
+        let speeds = (0..speeds.len()).filter(is_asked).flat_map(of_speed);
         let has_arm = self.experiment.has_arm();
         let plateaus = self.experiment.set_points.len();
         let steps = (1..plateaus).filter(|_| !has_arm && plateaus <= MOST_SINGLE);

@@ -120,6 +120,7 @@ impl Rival {
                 Extension::Disturbance(course) => course.facts().formula,
                 Extension::BiasWander => Course::Wander(1).facts().formula,
                 Extension::OneSpeed(_) => "d f / d ln Omega^2 at one set speed",
+                Extension::Resonance(_) => "1 at one set speed",
                 Extension::OneMounting(Difference::Shift, _) => "P D e_1, P D e_2 in one mounting",
                 Extension::OneMounting(Difference::Turn, _) => "delta in one mounting",
                 Extension::OneMounting(Difference::Unit, _) => "df0 + Gamma(f) f in one mounting",
@@ -171,6 +172,7 @@ impl Rival {
                 | Extension::RestsScale
                 | Extension::RestsUnit
                 | Extension::BiasWander
+                | Extension::Resonance(_)
                 | Extension::Disturbance(_) => "electronics and material of the unit",
             },
         }

@@ -19,7 +19,7 @@ fn catalogue() -> Vec<Rival> {
     let differences = [Difference::Shift, Difference::Turn, Difference::Unit];
     let of_one = differences.map(|difference| Rival::Effect(Extension::OneMounting(difference, 3)));
     let common = Rival::COMMON.into_iter().filter(|rival| *rival != Rival::Effect(Extension::BiasWander));
-    common.chain(of_one).chain([Rival::Effect(Extension::OneSpeed(1))]).collect()
+    common.chain(of_one).chain([Extension::OneSpeed(1), Extension::Resonance(1)].map(Rival::Effect)).collect()
 }
 
 /// The suspects of `observations` by the fit of `model`.
@@ -226,6 +226,8 @@ fn unseen_effects_do_what_is_said() {
         "elastic-turn-speed",
         "one-mounting-turn[4]",
         "one-speed[2]",
+        "resonance[2]",
+        "heating-load",
     ] {
         let effect = unseen.iter().find(|effect| effect.rival.name() == name).unwrap();
         let richer = model.with_rivals(&[effect.rival]);

@@ -110,7 +110,7 @@ impl RivalSummary {
 fn formula(rival: Rival, experiment: &Experiment) -> String {
     let speeds = experiment.set_speeds();
     match rival {
-        Rival::Effect(Extension::OneSpeed(speed)) if speed < speeds.len() => {
+        Rival::Effect(Extension::OneSpeed(speed) | Extension::Resonance(speed)) if speed < speeds.len() => {
             let omega = experiment.set_points[speeds[speed].0].omega.abs();
             rival.formula().replace(ONE_SET_SPEED, &format!("{:.2} rpm", rpm(omega)))
         }
