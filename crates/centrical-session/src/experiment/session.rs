@@ -16,9 +16,9 @@ use super::speeds::{SpeedSource, Speeds};
 use super::toml_path::TomlPath;
 use super::unit::OutputUnit;
 use super::{attitude, columns, schedule, speeds, terms, uncertainty, unit};
-use crate::error::{Error, quoted};
+use crate::error::{Error, Place, quoted};
 use crate::record::Columns;
-use crate::settings::{from_toml, read_settings, settings_of};
+use crate::settings::{editable, from_toml, read_settings, settings_of};
 use crate::units::Dimension;
 
 /// Name of the experiment file in a session folder.
@@ -119,6 +119,7 @@ impl Session {
         let file = experiment_file(path);
         let folder = Folder::of(&file);
         let text = settings_of(&folder.open_kept(&file, EXPERIMENT)?, EXPERIMENT)?;
+        refuse_other_text(&file, &text)?;
         let session = Self::parse_with(&text, &file, folder, read)?;
         session.folder.marks().refuse_changed()?;
         Ok(session)
@@ -315,6 +316,15 @@ impl Session {
 
 /// What an experiment file is expected to be.
 pub(super) const EXPERIMENT: &str = "an experiment file, or the folder with its experiment.toml";
+
+/// Refuses a text, such as a record, that neither is TOML nor has the name of it.
+fn refuse_other_text(file: &Path, text: &str) -> Result<(), Error> {
+    if Session::is_named_by(file) || editable(file, text).is_ok() {
+        return Ok(());
+    }
+    let expected = format!("{EXPERIMENT}; `centrical init` drafts one from records");
+    Err(Error::content(file, Place::Whole, "another text", expected))
+}
 
 /// Refuses a session with an arm that says nothing of what only an arm has.
 fn refuse_missing_keys(file: &Path, form: &Form) -> Result<(), Error> {
