@@ -4,13 +4,14 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use centrical::Position;
-use centrical::observability::{Addition, CorrelatedGroup};
+use centrical::observability::{Addition, Cause, CorrelatedGroup};
 use centrical::{
     Centrifuge, Combination, ErrorModel, Experiment, Extension, Extra, History, Law, MeasurementModel, Mounting,
-    PairRelation, ReferencePoint, SetPoint, Site, Study, Unit, Weight, rotation,
+    PairRelation, ReferencePoint, Rival, SetPoint, Site, Study, Unit, Weight, rotation,
 };
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 
+use super::validity::source_model;
 use crate::common::{Random, spread};
 
 /// A design of one to seven positions along the arm axes or oblique, one to three radii, up to three speeds, up to two
@@ -297,6 +298,33 @@ fn reasons_name_every_null_direction() {
         }
     }
     assert!(sums > 100, "no power: {sums}");
+}
+
+/// Another radius is called a cause where it parts what one radius leaves together, and not where each mounting has a shift of its own, which
+/// the mountings at the further radius would have too.
+#[test]
+fn another_radius_is_a_cause_where_it_parts() {
+    let study = |model: MeasurementModel| {
+        let count = model.experiment().set_points.len();
+        Study::at_zero(model, Weight::equal(count, 1e-4)).unwrap()
+    };
+    let names_radius = |study: &Study| study.reasons().iter().any(|reason| reason.causes.contains(&Cause::Radius));
+    let further = |study: &Study| {
+        let positions = (0..study.model().experiment().positions.len()).collect();
+        Addition::Radius { positions, radius: 0.4 }.apply(study).unwrap()
+    };
+    let two_radii = source_model();
+    let mut experiment = two_radii.experiment().clone();
+    for mounting in &mut experiment.mountings {
+        mounting.arm_y.x = 0.5;
+    }
+    let one_radius = study(two_radii.in_experiment(experiment));
+    assert!(
+        names_radius(&one_radius) && further(&one_radius).observability().lost() < one_radius.observability().lost()
+    );
+    let shifting = study(two_radii.with_rivals(&[Rival::Effect(Extension::MountingShift)]));
+    assert!(shifting.observability().lost() > 0 && !names_radius(&shifting));
+    assert!(further(&shifting).observability().lost() >= shifting.observability().lost());
 }
 
 /// Deformations and scales by name, each alone: rank is full with the common relation except for the load's turn.
