@@ -19,10 +19,10 @@ class InputError(ValueError):
         What stands there, and what should.
 
     >>> try:
-    ...     ct.Session(example / "records" / "m01.csv").calibrate()
+    ...     ct.Session.parse("[site]\\ngravity = 9,81", example).calibrate()
     ... except ct.InputError as error:
     ...     error.place
-    'line 1, column 2'
+    'line 2, column 12'
     """
 
     def __init__(
