@@ -39,12 +39,6 @@ fn protection(effect: &RestsOn) -> String {
     if let Some(Rival::Effect(Extension::OneSpeed(_))) = effect.rival() {
         return "protect: measure the speeds (measured under [centrifuge])".to_owned();
     }
-    if let Some(Rival::Effect(Extension::Resonance(_))) = effect.rival() {
-        return match effect.price_as_unknown {
-            Some(price) => format!("protect: {change}, at {price:.2} times the uncertainty of {}", effect.parameter),
-            None => "protect: leave out the plateaus at that speed".to_owned(),
-        };
-    }
     if let Some(Rival::Effect(Extension::Disturbance(Course::From(_)))) = effect.rival() {
         return "Repeating earlier attitudes would reveal a smaller step.".to_owned();
     }
@@ -55,8 +49,10 @@ fn protection(effect: &RestsOn) -> String {
     if let Some(Rival::Terms(Extra::Jump)) = effect.rival() {
         return format!("protect: state {bound} under [uncertainty]");
     }
+    let has_bound = !matches!(effect.rival(), Some(Rival::Effect(Extension::Resonance(_))));
     match effect.price_as_unknown {
-        Some(price) if price < CHEAP => {
+        None if !has_bound => "protect: leave out the plateaus at that speed".to_owned(),
+        Some(price) if price < CHEAP || !has_bound => {
             format!("protect: {change}, at {price:.2} times the uncertainty of {}", effect.parameter)
         }
         Some(price) => format!(

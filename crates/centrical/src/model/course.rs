@@ -101,9 +101,9 @@ impl Course {
             Self::WarmUp => history.warm_up,
             Self::WarmUpScale => history.warm_up * f0(),
             Self::Rise => history.rise,
-            Self::Heat(Law::Speed) => history.heat,
-            Self::Heat(Law::Load) => {
-                history.heat * Law::Speed.full_scale() * experiment.arm_of(set_point).x.abs() / Law::Load.full_scale()
+            Self::Heat(law) => {
+                let radius = experiment.arm_of(set_point).x;
+                history.heat * law.value(Law::Speed.full_scale(), radius) / law.full_scale()
             }
             Self::AtSpeedOf(first) => f64::from(u8::from(experiment.set_points[first].has_speed(set_point.omega))),
             Self::Memory => history.memory[axis],

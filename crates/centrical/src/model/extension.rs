@@ -165,20 +165,17 @@ impl Extension {
 
     /// Its name as written in sessions and plans.
     pub fn name(self) -> String {
-        if let Self::OneMounting(difference, mounting) = self {
-            let stem = Difference::NAMED.iter().find(|(_, known)| *known == difference).map_or("", |(name, _)| name);
-            return format!("{stem}[{}]", mounting + 1);
+        let of_one = |stem: &str, index: usize| format!("{stem}[{}]", index + 1);
+        match self {
+            Self::OneMounting(difference, mounting) => {
+                let mut named = Difference::NAMED.iter();
+                of_one(named.find(|(_, known)| *known == difference).map_or("", |(name, _)| name), mounting)
+            }
+            Self::OneSpeed(speed) => of_one(ONE_SPEED, speed),
+            Self::Resonance(speed) => of_one(RESONANCE, speed),
+            Self::Disturbance(Course::From(first)) => of_one(BIAS_STEP, first),
+            _ => Self::NAMED.iter().find(|(_, extension)| *extension == self).map_or("", |(name, _)| name).to_owned(),
         }
-        if let Self::OneSpeed(speed) = self {
-            return format!("{ONE_SPEED}[{}]", speed + 1);
-        }
-        if let Self::Resonance(speed) = self {
-            return format!("{RESONANCE}[{}]", speed + 1);
-        }
-        if let Self::Disturbance(Course::From(first)) = self {
-            return format!("{BIAS_STEP}[{}]", first + 1);
-        }
-        Self::NAMED.iter().find(|(_, extension)| *extension == self).map_or("", |(name, _)| name).to_owned()
     }
 
     /// The numbers, from 1, that one of a mounting on the arm, of a set speed or of a plateau can have in `experiment`.

@@ -1,8 +1,6 @@
 //! Why a combination is lost, from the structure of the design: which newtonometer feels which of its terms, only in
 //! which sum, and what in the experiment would have to vary for them to part.
 
-use std::ops::AddAssign;
-
 use nalgebra::{DMatrix, DVector};
 
 use super::addition::{Addition, positions_text};
@@ -267,7 +265,8 @@ fn readings_by(unknowns: &[usize], study: &Study) -> DMatrix<f64> {
     for (n, linearisation) in study.linearisations().iter().enumerate() {
         for (column, derivative) in &linearisation.columns {
             if let Ok(k) = unknowns.binary_search(column) {
-                columns.fixed_view_mut::<3, 1>(3 * n, k).add_assign(derivative);
+                let mut readings = columns.fixed_view_mut::<3, 1>(3 * n, k);
+                readings += derivative;
             }
         }
     }
