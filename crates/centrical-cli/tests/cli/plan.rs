@@ -102,7 +102,7 @@ fn plans_for_goals() {
         fs::write(&plan, text).unwrap();
         copy.run(&["plan", &plan, "--json"])
     };
-    let met = goals("[target.uncertainty]\nreading = \"1500 ug\"");
+    let met = goals("[target.uncertainty]\nreading = \"900 ug\"");
     assert_eq!(met.status.code(), Some(0), "{}", String::from_utf8_lossy(&met.stderr));
     let report: Value = serde_json::from_slice(&met.stdout).unwrap();
     assert!(report["value"].as_f64().unwrap() <= 1.0);

@@ -55,6 +55,9 @@ fn afflicted(model: &MeasurementModel, rival: Rival, random: &mut Random) -> Opt
             return None;
         }
         size *= sigmas / root;
+        if (root / sigmas - 1.0).abs() < 1e-2 {
+            break;
+        }
     }
     Some((richer.clone(), at(size)))
 }
