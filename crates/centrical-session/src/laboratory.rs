@@ -162,13 +162,10 @@ impl Laboratory {
             let place = Place::Key { table: table.to_owned(), key: key.to_owned() };
             Err(Error::content(file, place, found, expected))
         };
-        let filled = [
-            ("[laboratory]", "name", &self.laboratory.name),
-            ("[customer]", "name", &self.customer.name),
-            ("[certificate]", "number", &self.certificate.number),
-        ];
-        if let Some((table, key, _)) = filled.into_iter().find(|(_, _, text)| text.trim().is_empty()) {
-            return refuse(table, key, "an empty text".to_owned(), "a text");
+        let must_be_filled = |key| ["name", "number", "specification"].contains(&key);
+        let mut texts = self.texts().into_iter();
+        if let Some((table, key, _)) = texts.find(|(_, key, text)| must_be_filled(*key) && text.trim().is_empty()) {
+            return refuse(&table, key, "an empty text".to_owned(), "a text");
         }
         for (table, address) in [("[laboratory]", &self.laboratory.address), ("[customer]", &self.customer.address)] {
             let country = &address.country;
@@ -251,7 +248,7 @@ mod tests {
     /// Each change of the example is refused with the place, what was found and what was expected.
     #[test]
     fn mistakes_are_named() {
-        let cases: [(&str, &str, &[&str]); 18] = [
+        let cases: [(&str, &str, &[&str]); 20] = [
             ("[customer]", "[costumer]", &["line", "costumer"]),
             ("post_code", "postcode", &["line", "postcode"]),
             ("country = \"RU\"", "country = \"Russia\"", &["address.country", "Russia", "ISO 3166-1"]),
@@ -266,6 +263,8 @@ mod tests {
                 &["[certificate], received", "2026-10-05 (begun) or earlier"],
             ),
             ("issued = 2026-10-09", "issued = 2026-10-06", &["[certificate], issued", "2026-10-06", "2026-10-07"]),
+            ("name = \"B. Petrov\"", "name = \" \"", &["[[person]] 2, name", "an empty text"]),
+            ("number = \"CL-2026-0117\"", "number = \"\"", &["[certificate], number", "an empty text"]),
             ("authorises = true", "authorises = false", &["[[person]]", "nobody"]),
             ("low = -0.15", "low = 0.2", &["[[decision.limit]] 1, low", "0.2", "below high"]),
             ("low = -0.15", "low = nan", &["[[decision.limit]] 1, low", "NaN", "finite"]),
