@@ -133,7 +133,7 @@ def test_memory_in_which_no_process_starts_is_named(fleet_of, tmp_path):
     [
         ("aborts", {}, "crashed: ended by SIGABRT, twice"),
         ("eats", {}, "crashed: ended by SIGABRT, twice"),
-        ("sleeps", {"seconds": 1.0}, "crashed: took longer than 1 s, twice"),
+        ("sleeps", {"seconds": 5.0}, "crashed: took longer than 5 s, twice"),
     ],
 )
 def test_a_session_that_ends_its_process_is_a_row(fleet_of, tmp_path, name, limits, found):
