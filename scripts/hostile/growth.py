@@ -8,13 +8,14 @@ import shutil
 from judge import Group, run
 
 # Plateaus a mounting, for each of the example's, and what 5000 may take: processor time [s] and memory [bytes]. It is about 1 s on the machine of
-# docs/performance.md; a shared machine whose cores have other work took 4.6 s.
+# docs/performance.md; a shared machine whose cores have other work takes 1.9 s.
 REPEATS = (4, 46)
-PROCESSOR = 8.0
+PROCESSOR = 5.0
 MEMORY = 300 << 20
 
-# Processor time grows as this power of the number of plateaus, at most.
+# Processor time grows as this power of the number of plateaus, at most, in the best of these attempts.
 EXPONENT = 1.15
+ATTEMPTS = 5
 
 MOUNTINGS = 10_000
 
@@ -39,7 +40,7 @@ def plateaus(place):
     text, header, rows = table(place)
     folder = place.new()
     drawn = random.Random(1)
-    counts, least = [], {}
+    sessions, counts = [], []
     for repeats in REPEATS:
         session = folder / str(repeats)
         session.mkdir()
@@ -49,20 +50,31 @@ def plateaus(place):
             lines.append(",".join(row[:3] + noisy + row[6:]))
         (session / "experiment.toml").write_text(text)
         (session / "plateaus.csv").write_text("\n".join(lines) + "\n")
+        sessions.append(session)
         counts.append(len(lines) - 1)
-        for command in ("calibrate", "assess", "observe"):
-            # The least of three: others on the machine only add to it.
-            runs = [run([command, session, "--json"], folder) for _ in range(3)]
-            best = min(runs, key=lambda done: done.processor)
-            least[command, repeats] = best.processor
-            large = f"{best.processor:.1f} s, {best.memory >> 20} MB" if best.processor > PROCESSOR or best.memory > MEMORY else None
-            found.judge(f"{command}, {counts[-1]} plateaus", best, codes=(0, 1), why=large)
     for command in ("calibrate", "assess", "observe"):
-        first, last = (least[command, repeats] for repeats in REPEATS)
-        exponent = math.log(last / first) / math.log(counts[1] / counts[0])
+        exponent = least_growth(found, command, sessions, counts, folder)
         found.judge(f"growth of {command}", why=f"as plateaus^{exponent:.2f}" if exponent > EXPONENT else None)
     shutil.rmtree(folder)
     return found
+
+
+def least_growth(found, command, sessions, counts, folder):
+    """The power of the number of plateaus with which a command takes processor time, the least of some attempts.
+
+    A core that others share is slower by half for seconds: the short session runs as often as it takes for as many plateaus, half
+    of the runs before the long one and half after it. One attempt without others shows the power; where it is too large, none does."""
+    exponents = []
+    half = round(counts[1] / counts[0] / 2)
+    while len(exponents) < ATTEMPTS and min(exponents, default=math.inf) > EXPONENT:
+        runs = [run([command, sessions[which], "--json"], folder) for which in [0] * half + [1] + [0] * half]
+        long = runs.pop(half)
+        short = sum(done.processor for done in runs) / len(runs)
+        exponents.append(math.log(long.processor / short) / math.log(counts[1] / counts[0]))
+        large = f"{long.processor:.1f} s, {long.memory >> 20} MB" if long.processor > PROCESSOR or long.memory > MEMORY else None
+        found.judge(f"{command}, {counts[1]} plateaus", long, codes=(0, 1), why=large)
+        found.judge(f"{command}, {counts[0]} plateaus", max(runs, key=lambda done: done.processor), codes=(0, 1))
+    return min(exponents)
 
 
 def mountings(place):

@@ -100,7 +100,8 @@ impl Calibration<'_> {
             let acting: Vec<usize> = asked.iter().copied().filter(|&n| value(n) != 0.0).collect();
             let largest = acting.iter().fold(0.0_f64, |most, &n| most.max(value(n).abs()));
             for axis in 0..3 {
-                let columns = Columns::new(gain, acting.clone(), 1, |n, _| Vector3::ith(axis, value(n) / largest));
+                let column = acting.iter().map(|&n| (n, Vector3::ith(axis, value(n) / largest))).collect();
+                let columns = Columns::new(gain, [column]);
                 let (redundancy, along) = match &explained {
                     Some((other, inverse)) => columns.beside(other, inverse),
                     None => (columns.redundancy(), columns.along.clone()),

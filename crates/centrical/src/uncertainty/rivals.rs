@@ -8,6 +8,7 @@
 
 mod catalogue;
 pub(super) mod columns;
+mod order;
 mod power;
 mod rests_on;
 mod scatter;

@@ -1,8 +1,8 @@
 //! The columns of every rival that a model leaves out.
 
-use nalgebra::{DMatrix, Vector3};
+use nalgebra::DMatrix;
 
-use super::columns::{Columns, Seen};
+use super::columns::{Column, Columns, Seen};
 use super::scatter::Scatter;
 use crate::fit::Calibration;
 use crate::model::{FitError, Kind, MeasurementModel, Parameter, Rival};
@@ -54,37 +54,30 @@ fn suspects(calibration: &Calibration, rivals: &[Rival], progress: OnProgress<()
     let (gain, data) = (calibration.gain()?, calibration.data());
     let model = data.model();
     let richer = model.with_rivals(rivals);
-    let mut first = first_further(model, &richer);
+    let first = first_further(model, &richer);
     let x = widened(calibration.fit().state(), first, &richer);
     let set_points = &richer.experiment().set_points;
-    let mut derivatives = Vec::with_capacity(data.observations().len());
-    for observation in data.observations() {
+    let mut further: Vec<Column> = vec![Vec::new(); richer.parameters().len() - first];
+    for (n, observation) in data.observations().iter().enumerate() {
         advance(progress, ())?;
         let all = richer.linearise(&set_points[observation.set_point], &x).columns;
-        let mut further: Vec<(usize, Vector3<f64>)> = all.into_iter().filter(|(index, _)| *index >= first).collect();
-        further.sort_by_key(|(index, _)| *index);
-        derivatives.push(further);
+        for (index, change) in all.into_iter().filter(|(index, change)| *index >= first && change.amax() > 0.0) {
+            further[index - first].push((n, change));
+        }
     }
-    let derivative = |n: usize, index: usize| -> Option<Vector3<f64>> {
-        let place = derivatives[n].binary_search_by_key(&index, |(index, _)| *index).ok()?;
-        Some(derivatives[n][place].1)
-    };
+    let mut further = further.into_iter();
     let attitudes = attitude_uncertainties(calibration);
     let mut list = Vec::new();
     for &rival in rivals {
         advance(progress, ())?;
         let unknowns = rival.parameters(model.experiment(), model.error_model());
-        let all = first..first + unknowns.len();
-        let acts = |n: &usize| all.clone().any(|index| derivative(*n, index).is_some_and(|d| d.amax() > 0.0));
-        let acting: Vec<usize> = (0..derivatives.len()).filter(acts).collect();
-        if !acting.is_empty() {
-            let by_column = |n: usize, c: usize| derivative(n, all.start + c).unwrap_or_else(Vector3::zeros);
-            let columns = Columns::new(gain, acting, unknowns.len(), by_column);
+        let own: Vec<Column> = further.by_ref().take(unknowns.len()).collect();
+        if own.iter().any(|column| !column.is_empty()) {
+            let columns = Columns::new(gain, own);
             let least = columns.least(|n| attitudes[n]);
             let seen = Seen::of(columns.redundancy(), &least);
             list.push(Suspect { rival, unknowns, columns, least, seen });
         }
-        first = all.end;
     }
     Ok(list)
 }

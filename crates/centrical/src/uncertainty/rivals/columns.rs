@@ -8,12 +8,13 @@ use crate::model::Observation;
 /// A combination of columns is seen when more than this part of its length is redundant.
 const REDUNDANT: f64 = 1e-5;
 
+/// A column: the observations where it acts, rising, each with its change [m/s^2] or, whitened, without a unit.
+pub(in crate::uncertainty) type Column = Vec<(usize, Vector3<f64>)>;
+
 /// Columns on the plateaus where they act.
 pub(in crate::uncertainty) struct Columns {
-    /// Observations, rising.
-    acting: Vec<usize>,
-    /// Whitened columns on these observations, each of unit length.
-    z: DMatrix<f64>,
+    /// `Z`: whitened columns, each of unit length.
+    z: Vec<Column>,
     /// `Z^T Z`.
     square: DMatrix<f64>,
     /// `Q^T Z`.
@@ -31,52 +32,35 @@ pub(in crate::uncertainty) struct Seen {
 }
 
 impl Columns {
-    /// `count` columns that act on the observations `acting`, rising; `derivative` gives the change of observation `n` by one
-    /// unit of column `c` [m/s^2]. A column without length stays zero.
-    pub fn new(
-        gain: &Gain,
-        acting: Vec<usize>,
-        count: usize,
-        derivative: impl Fn(usize, usize) -> Vector3<f64>,
-    ) -> Self {
-        let mut z = DMatrix::zeros(3 * acting.len(), count);
-        for (place, &n) in acting.iter().enumerate() {
-            for c in 0..count {
-                z.fixed_view_mut::<3, 1>(3 * place, c).copy_from(&gain.whitener(n).apply(&derivative(n, c)));
+    /// Columns that change the observations by so much for one unit. A column without length stays zero.
+    pub fn new(gain: &Gain, columns: impl IntoIterator<Item = Column>) -> Self {
+        let mut z: Vec<Column> = columns.into_iter().collect();
+        let mut lengths = Vec::with_capacity(z.len());
+        for column in &mut z {
+            for (n, change) in column.iter_mut() {
+                *change = gain.whitener(*n).apply(change);
             }
+            let length = column.iter().map(|(_, change)| change.norm_squared()).sum::<f64>().sqrt();
+            for (_, change) in column.iter_mut().filter(|_| length > 0.0) {
+                *change /= length;
+            }
+            lengths.push(length);
         }
-        let lengths: Vec<f64> = z.column_iter().map(|column| column.norm()).collect();
-        let scaled = z.column_iter_mut().zip(&lengths).filter(|(_, length)| **length > 0.0);
-        scaled.for_each(|(mut column, length)| column /= *length);
-        let rows: Vec<usize> = acting.iter().flat_map(|n| 3 * n..3 * n + 3).collect();
-        let followed = gain.basis().select_rows(&rows).tr_mul(&z);
-        let along = z.tr_mul(&gain.whitened_residuals().select_rows(&rows));
-        Self { acting, square: z.tr_mul(&z), z, followed, lengths, along }
+        let (q, e) = (gain.basis(), gain.whitened_residuals());
+        let followed = DMatrix::from_fn(q.ncols(), z.len(), |j, c| along(&z[c], q.column(j).as_slice()));
+        let along = DVector::from_fn(z.len(), |c, _| along(&z[c], e.as_slice()));
+        Self { square: products(&z, &z, |_| 1.0), z, followed, lengths, along }
     }
 
     /// A column for each rest, which acts there alone: a unit reading along its specific force.
     pub fn along_forces(gain: &Gain, rests: &[Observation]) -> Self {
-        let count = rests.len();
-        let (mut z, mut followed) = (DMatrix::zeros(3 * count, count), DMatrix::zeros(gain.basis().ncols(), count));
-        let mut lengths = Vec::with_capacity(count);
-        for (n, mut column) in followed.column_iter_mut().enumerate() {
-            let mut whitened = gain.whitener(n).apply(&rests[n].mean.normalize());
-            let length = whitened.norm();
-            whitened.unscale_mut(if length > 0.0 { length } else { 1.0 });
-            z.fixed_view_mut::<3, 1>(3 * n, n).copy_from(&whitened);
-            gain.basis().rows(3 * n, 3).tr_mul_to(&whitened, &mut column);
-            lengths.push(length);
-        }
-        let along = z.tr_mul(&gain.whitened_residuals());
-        let square = DMatrix::from_diagonal(&DVector::from_fn(count, |n, _| z.column(n).norm_squared()));
-        Self { acting: (0..count).collect(), z, square, followed, lengths, along }
+        Self::new(gain, rests.iter().enumerate().map(|(n, rest)| vec![(n, rest.mean.normalize())]))
     }
 
     /// Column `c` alone.
     pub fn only(&self, c: usize) -> Self {
         Self {
-            acting: self.acting.clone(),
-            z: self.z.columns(c, 1).into_owned(),
+            z: vec![self.z[c].clone()],
             square: self.square.view((c, c), (1, 1)).into_owned(),
             followed: self.followed.columns(c, 1).into_owned(),
             lengths: vec![self.lengths[c]],
@@ -98,25 +82,13 @@ impl Columns {
     /// turn of observation `n` by its standard uncertainty `u_n` [rad] changes its rows by up to that part: such a rest of a column
     /// follows the noise, and so would its test.
     pub fn least(&self, u: impl Fn(usize) -> f64) -> DMatrix<f64> {
-        let mut least = DMatrix::identity(self.z.ncols(), self.z.ncols()) * REDUNDANT.powi(2);
-        for (place, n) in self.acting.iter().enumerate() {
-            let rows = self.z.rows(3 * place, 3);
-            least += rows.tr_mul(&rows) * u(*n).powi(2);
-        }
-        least
+        let count = self.z.len();
+        DMatrix::identity(count, count) * REDUNDANT.powi(2) + products(&self.z, &self.z, |n| u(n).powi(2))
     }
 
     /// `s_a^T s_b`.
     pub fn redundancy_with(&self, other: &Self) -> DMatrix<f64> {
-        let mut product = DMatrix::zeros(self.z.ncols(), other.z.ncols());
-        let mut there = 0;
-        for (here, n) in self.acting.iter().enumerate() {
-            there += other.acting[there..].partition_point(|m| m < n);
-            if other.acting.get(there) == Some(n) {
-                product += self.z.rows(3 * here, 3).tr_mul(&other.z.rows(3 * there, 3));
-            }
-        }
-        product - self.followed.tr_mul(&other.followed)
+        products(&self.z, &other.z, |_| 1.0) - self.followed.tr_mul(&other.followed)
     }
 
     /// `s^T s` and `s^T e` with what `other`, whose `(s^T s)^+` is `inverse`, explains taken off both.
@@ -164,4 +136,37 @@ impl Seen {
         root.column_iter_mut().zip(&self.values).for_each(|(mut column, value)| column /= value.sqrt());
         &root * root.transpose()
     }
+}
+
+/// `z^T y`.
+fn along(z: &[(usize, Vector3<f64>)], y: &[f64]) -> f64 {
+    let mut sums = Vector3::zeros();
+    for (n, change) in z {
+        sums += change.component_mul(&Vector3::from_column_slice(&y[3 * n..3 * n + 3]));
+    }
+    sums.sum()
+}
+
+/// `A^T W B`, where `W` weighs observation `n` with `weight(n)`.
+fn products(a: &[Column], b: &[Column], weight: impl Fn(usize) -> f64) -> DMatrix<f64> {
+    DMatrix::from_fn(a.len(), b.len(), |i, j| product(&a[i], &b[j], &weight))
+}
+
+/// `a^T W b`, over the observations where both columns act.
+fn product(a: &[(usize, Vector3<f64>)], b: &[(usize, Vector3<f64>)], weight: impl Fn(usize) -> f64) -> f64 {
+    let (mut a, mut b) = (from(a, b), from(b, a));
+    let mut sum = 0.0;
+    while let ([(n, here), rest_a @ ..], [(m, there), rest_b @ ..]) = (a, b) {
+        if n == m {
+            sum += weight(*n) * here.dot(there);
+        }
+        (a, b) = (if n <= m { rest_a } else { a }, if m <= n { rest_b } else { b });
+    }
+    sum
+}
+
+/// A column from the first observation of another on.
+fn from<'a>(column: &'a [(usize, Vector3<f64>)], other: &[(usize, Vector3<f64>)]) -> &'a [(usize, Vector3<f64>)] {
+    let first = other.first().map_or(0, |(n, _)| *n);
+    &column[column.partition_point(|(n, _)| *n < first)..]
 }

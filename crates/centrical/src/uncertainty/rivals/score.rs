@@ -2,6 +2,7 @@
 
 use super::catalogue::{Rivals, Suspect};
 use super::columns::Seen;
+use super::order::to_rounding;
 use crate::model::{Parameter, Rival};
 use crate::statistics::{chi_squared_tail, holm};
 use crate::uncertainty::verdict::Level;
@@ -58,7 +59,7 @@ impl Rivals<'_> {
         let family_wise = holm(tests.iter().map(|test| test.probability));
         tests.iter_mut().zip(family_wise).for_each(|(test, probability)| test.family_wise = probability);
         tests.retain(|test| test.family_wise < level);
-        tests.sort_by(|a, b| b.evidence().total_cmp(&a.evidence()));
+        tests.sort_by(|a, b| to_rounding(b.evidence()).total_cmp(&to_rounding(a.evidence())));
         let best = tests.first().map(|test| test.rival);
         let (mut alike, others): (Vec<RivalTest>, Vec<RivalTest>) = tests
             .into_iter()
