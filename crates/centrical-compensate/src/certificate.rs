@@ -17,10 +17,10 @@
 //! 2. a start: `f_0 = C (f' - b)` lies within `eta` of the solution, so in `B_4/3` for every `f` of the range. And
 //!    for every `f_0` in `B_4/3` there is a solution in `B_5/3` (`v -> f_0 - C N(v)` is a contraction there, its
 //!    shift being at most `1/3` over `B_2`), so what comes out is never an artefact;
-//! 3. convergence: with `e` the distance to the solution, a fixed-point step `f <- f_0 - C N(f)` leaves at most
-//!    `kappa e`, from `eta` on; a Newton step at most `e (gamma e / 2 + 2 kappa') / (1 - kappa)`, which falls from the
-//!    start on (it is asked to halve at least). Both keep the iterates in `B_2`. The numbers of steps that reach
-//!    rounding follow, once for all readings; a Newton step costs as much as three of the others.
+//! 3. convergence: let `e` be the distance to the solution. A fixed-point step `f <- f_0 - C N(f)` leaves at most
+//!    `kappa e`, from `eta` on. A Newton step leaves at most `e (gamma e / 2 + 2 kappa') / (1 - kappa)`, which falls
+//!    from the start on (it is required to halve at least). Both keep the iterates in `B_2`. The numbers of steps that
+//!    reach rounding follow, once for all readings; a Newton step costs as much as three of the others.
 
 use crate::error::NotInvertible;
 use crate::linear::{Linear, is_affine};

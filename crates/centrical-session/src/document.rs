@@ -1,4 +1,4 @@
-//! The documents that the program writes, one schema a file.
+//! The JSON documents that the program writes, one schema a file.
 
 mod added;
 mod assessment;

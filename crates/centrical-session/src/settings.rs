@@ -1,4 +1,4 @@
-//! Settings and documents from their text, and what is wrong with one in words of the file and not of its parser.
+//! Settings and JSON documents from their text, and what is wrong with one in words of the file and not of its parser.
 
 mod strict;
 mod words;
@@ -71,7 +71,7 @@ pub(crate) fn toml_text(text: &str) -> String {
     Value::from(text).to_string().trim().to_owned()
 }
 
-/// A document from JSON, which should be what `expected` says; `line` is the number of its first line in the file.
+/// A JSON document, which should be what `expected` says; `line` is the number of its first line in the file.
 pub(crate) fn from_json<T: DeserializeOwned>(file: &Path, line: usize, text: &str, expected: &str) -> Result<T, Error> {
     serde_json::from_str(text).map_err(|error| {
         let place = Place::Character { line: line + error.line().max(1) - 1, column: error.column() };
@@ -79,7 +79,7 @@ pub(crate) fn from_json<T: DeserializeOwned>(file: &Path, line: usize, text: &st
     })
 }
 
-/// A document from JSON that stands under a key of settings.
+/// A JSON document that stands under a key of settings.
 pub(crate) fn from_json_under<T: DeserializeOwned>(
     file: &Path,
     key: &str,

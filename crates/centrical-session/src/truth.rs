@@ -1,4 +1,4 @@
-//! The truth file of a simulation: the unit as it is, and the laboratory's equipment as it errs. Equipment that is not given is perfect.
+//! The truth file of a simulation: the unit's true parameters and the equipment's errors. Equipment that is not given is perfect.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};

@@ -25,11 +25,11 @@ pub struct Field {
     pub name: ColumnName,
     /// What its values are, for messages: "a number in m/s^2".
     pub expected: String,
-    /// What is asked of its values beside being numbers.
+    /// The rule that its values keep beyond being numbers.
     pub rule: Rule,
 }
 
-/// What is asked of the values of a column beside being numbers.
+/// The rule that the values of a column keep beyond being numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Rule {
     /// Nothing.

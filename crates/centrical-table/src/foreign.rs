@@ -5,9 +5,9 @@ use std::borrow::Cow;
 /// Replaces a character that is not shown. Decoders put it in place of bytes that are not text.
 const REPLACEMENT: char = '\u{fffd}';
 
-/// The text without what a terminal, a compiler, a browser or a reader of XML takes for anything but a character to be shown: control
-/// characters but the end of a line and the tabulator, marks that reverse the direction of what follows, characters without
-/// a width, and code points that are not characters. Each is replaced by U+FFFD. Most texts are as they were.
+/// Replaces by U+FFFD control characters (except newline and tab), bidirectional marks, zero-width characters and code points that
+/// are not characters. Terminals, compilers, browsers and readers of XML act on these instead of showing them. Most texts stay as
+/// they are.
 pub fn harmless(text: &str) -> Cow<'_, str> {
     without(text, |c| !matches!(c, '\n' | '\t') && is_harmful(c))
 }
@@ -18,7 +18,7 @@ pub fn harmless_line(text: &str) -> Cow<'_, str> {
     if text.contains(['\n', '\r', '\t']) { Cow::Owned(text.replace(['\n', '\r', '\t'], " ")) } else { text }
 }
 
-/// A document in JSON with the same characters escaped, so that it is the same document to whoever reads it.
+/// A JSON document with the same characters escaped, so that it is the same to whoever reads it.
 pub fn escaped(json: String) -> String {
     let is_left = |c| matches!(c, '\n' | '\t') || !is_harmful(c);
     if json.chars().all(is_left) {

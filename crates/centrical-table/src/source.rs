@@ -32,7 +32,7 @@ impl Source {
         let failed = |e| Error::reading(file, e, expected);
         let kind = std::fs::metadata(file).map_err(failed)?.file_type();
         if !kind.is_file() {
-            let found = if kind.is_dir() { "a folder" } else { "something that is no regular file" };
+            let found = if kind.is_dir() { "a folder" } else { "a path that is not a regular file" };
             return Err(Error::content(file, Place::Whole, found, expected));
         }
         let input = File::open(file).map_err(failed)?;

@@ -44,7 +44,7 @@ pub mod fit;
 pub mod history;
 mod linalg;
 mod model;
-/// What an experiment can see, why not more, and what would help.
+/// Observability of an experiment: rank, undetermined combinations, their causes and remedies.
 pub mod observability;
 /// Plans of experiments.
 pub mod plan;

@@ -1,4 +1,4 @@
-//! What an experiment can see: rank, singular values, null directions, estimability and correlation.
+//! Observability of an experiment: rank, singular values, null directions, estimability and correlation.
 //!
 //! The columns of the weighted design matrix are scaled to unit length, so that the answer does not depend on
 //! units; then its singular value decomposition is taken (of the triangle of its QR factorisation). Weights

@@ -5,15 +5,15 @@
 //!
 //! `f'(t) = mean + a exp(-(t - t_0) / tau) + c cos(Omega (t - t_0)) + s sin(Omega (t - t_0)) + noise`,
 //!
-//! The second term is the remaining settling, the next two are the once-per-revolution term (tilt of the axis of
-//! rotation); at rest the mean is the only term. The noise is coloured, and one plateau is too short to show its
-//! colour: it is pooled over all plateaus of the session, or over those of each speed where they differ ([`NoiseModel`]), and then
-//! gives every mean its covariance ([`ReducedMounting::means`]).
+//! The second term is the remaining settling, the next two are the once-per-revolution term (tilt of the axis of rotation); at
+//! rest the mean is the only term. The noise is coloured, and one plateau is too short to show its colour. It is pooled over all
+//! plateaus of the session, or over those of each speed where they differ ([`NoiseModel`]). It then gives every mean its
+//! covariance ([`ReducedMounting::means`]).
 //!
-//! Samples are taken with equal weight or rejected: spikes (off the fit by more than `sqrt(2 ln 20 n)` robust standard
-//! deviations of `n` samples), stuck readings, and readings that are not numbers. Fewer than one in twenty plateaus loses a good sample
-//! on an axis, so the mean has an efficiency above `1 - (2 ln 20 n) / (20 n)` of that of least squares, 0.999 of a thousand
-//! samples, and up to half of the samples may be spikes.
+//! Samples are taken with equal weight or rejected: spikes (off the fit by more than `sqrt(2 ln 20 n)` robust standard deviations of
+//! `n` samples), stuck readings, and readings that are not numbers. Fewer than one in twenty plateaus loses a good sample on an axis.
+//! So the mean has an efficiency above `1 - (2 ln 20 n) / (20 n)` of that of least squares, 0.999 of a thousand samples. Up to half of
+//! the samples may be spikes.
 //!
 //! A record that a recording mistake explains decisively better, such as exchanged axes, is refused with the name of
 //! that mistake ([`Mistake`]).

@@ -349,7 +349,8 @@ fn a_due_date_that_has_passed_is_overdue() {
     assert_eq!(results.run(&["unit", "."]).0, 0);
 }
 
-/// One date that is no day does not stop a plant: it is refused at the door, and left out by name where it is in a store already.
+/// One text that is not a date does not stop a plant: it is refused at the door, and left out by name where it is in a store
+/// already.
 #[test]
 fn a_date_that_is_no_day_is_refused_and_left_out() {
     let results = Results::new();

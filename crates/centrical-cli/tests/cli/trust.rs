@@ -86,7 +86,7 @@ fn montecarlo_draws_from_a_preset_plan() {
     let plan = example().join("../plans/normalised.toml");
     let told = text(&run(&["montecarlo", plan.to_str().unwrap(), "--runs", "30"]));
     assert!(told.contains("MONTE CARLO  30 calibrations"), "{told}");
-    assert!(told.starts_with("A unit of typical errors"), "its rank is short: {told}");
+    assert!(told.starts_with("A unit with typical errors"), "its rank is short: {told}");
 }
 
 /// What calibrations state of the unit that is drawn for by default is what `observe` predicts.
@@ -120,7 +120,7 @@ fn montecarlo_draws_for_the_unit_that_is_predicted() {
         assert!(agree(name, &drawn), "{name}: {} drawn, {} predicted", drawn[name], predicted[name]);
     }
     let typical = text(&run(&["montecarlo", plan, "--runs", "20", "--typical"]));
-    assert!(typical.starts_with("A unit of typical errors"), "{typical}");
+    assert!(typical.starts_with("A unit with typical errors"), "{typical}");
     let typical = uncertainties(&typical, "MONTE CARLO", 2);
     assert!(!predicted.keys().all(|name| agree(name, &typical)), "it makes no difference");
 }

@@ -1,4 +1,4 @@
-//! `centrical watch` on a folder that is complete, and on one that is being filled.
+//! `centrical watch` on a complete folder, and on one to which the laboratory is still adding records.
 
 use std::fmt::Write as _;
 use std::fs::{self, OpenOptions};

@@ -38,7 +38,7 @@ pub struct Issuer {
 
 impl Issuer {
     /// In words, that the file has the calibration on other days than that of the session, most often because it is of another certificate; or
-    /// that the session's date is no day that could be compared.
+    /// that the session's date is invalid and cannot be compared.
     pub fn other_days(&self, result: &CalibrationResult) -> Option<String> {
         let (begun, ended) = (self.laboratory.certificate.begun, self.laboratory.certificate.ended);
         let days = format!("found [certificate] begun = {begun} and ended = {ended}");
@@ -47,7 +47,7 @@ impl Issuer {
                 Some(format!("{days}, expected the day of the session between them, {day}"))
             }
             Err(expected) if !result.session.date.is_empty() => {
-                Some(format!("{days} beside a session whose date is no day, {expected}"))
+                Some(format!("{days} beside a session whose date is invalid, {expected}"))
             }
             _ => None,
         }

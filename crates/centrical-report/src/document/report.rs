@@ -76,7 +76,7 @@ pub fn report(
     }
 }
 
-/// What the unit does, what compensation leaves, and how well it is known.
+/// Errors before and after compensation, and their uncertainty.
 fn is_of_first_layer(figure: &Figure) -> bool {
     ["attitudes", "before", "after", "prediction"].contains(&figure.name)
 }

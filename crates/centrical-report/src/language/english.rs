@@ -274,7 +274,7 @@ pub(crate) const ENGLISH: Messages = Messages {
     error_model: "Error model of the unit",
     error_model_note: "f′ is a reading in m/s², f the specific force along the sensitive axes:",
     parameters_of_instrument: "Parameters of the instrument",
-    first_plots: "What the unit does and what is left",
+    first_plots: "Readings before and after compensation",
     further_plots: "Further plots",
     checks: "Checks of the fit",
     contents: "Further, to be opened",

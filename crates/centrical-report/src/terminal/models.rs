@@ -156,7 +156,7 @@ fn reasons(selection: &ModelSelection) -> Vec<String> {
         reasons.insert(
             0,
             format!(
-                "it does not fit either, chi^2 {} of {} degrees of freedom: what is wrong is no effect of this list alone",
+                "it does not fit either, chi^2 {} of {} degrees of freedom: no single effect in this list explains the residuals",
                 wide(best.chi_squared),
                 best.degrees_of_freedom
             ),

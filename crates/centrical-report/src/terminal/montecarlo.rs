@@ -97,9 +97,9 @@ fn statistics(screen: &mut Screen, parameters: &Parameters, monte_carlo: &MonteC
 
 fn drawn_unit(parameters: &Parameters, truth: &[f64]) -> Option<&'static str> {
     if truth.iter().all(|value| *value == 0.0) {
-        Some("A unit without errors, as it is predicted; --typical draws for one of typical errors")
+        Some("A unit without errors, as it is predicted; --typical draws for one with typical errors")
     } else {
-        (truth == parameters.typical_alternating()).then_some("A unit of typical errors, signs in turn")
+        (truth == parameters.typical_alternating()).then_some("A unit with typical errors of alternating sign")
     }
 }
 

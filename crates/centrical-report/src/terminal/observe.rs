@@ -1,4 +1,4 @@
-//! What an experiment can see, as text for the terminal.
+//! Observability of an experiment, as text for the terminal.
 
 use centrical::Group;
 use centrical_session::{ConditionReport, ObservabilityReport, ObservedParameter, RemedyReport, customary};
@@ -126,7 +126,7 @@ fn groups(screen: &mut Screen, report: &ObservabilityReport) {
         return;
     }
     screen.gap();
-    screen.head("HARDLY TOLD APART", "each is a combination of the others to 0.99 or more");
+    screen.head("NEARLY COLLINEAR", "each is a combination of the others to 0.99 or more");
     for group in &report.correlated_groups {
         let weakest = group.multiple_correlations.iter().copied().fold(1.0, f64::min);
         let strongest = group.multiple_correlations.iter().copied().fold(0.0, f64::max);

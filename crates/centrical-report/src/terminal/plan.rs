@@ -58,7 +58,7 @@ fn heading(screen: &mut Screen, report: &PlanReport) {
     if report.for_typical {
         screen.say(
             2,
-            "for a unit of typical errors, signs in turn: a plan for one without errors misses goals with such errors",
+            "for a unit with typical errors of alternating sign: a plan for one without errors misses goals with such errors",
         );
     }
     let percent = |part: f64| format!("{:.2} %", 100.0 * part);

@@ -1,4 +1,4 @@
-//! How far a calibration can be trusted, as a document: schema `centrical-assessment/1`.
+//! How far a calibration can be trusted, as a JSON document: schema `centrical-assessment/1`.
 
 use centrical::uncertainty::{Budget, CurvePoint, Improvement, Pattern, PlateauCheck, Validity};
 use centrical::{Experiment, Fit, Group, MeasurementModel, Source, Termination};
@@ -103,7 +103,7 @@ pub struct AssessedParameter {
     pub expanded_uncertainty: Option<f64>,
 }
 
-/// What a perfect source would bring.
+/// What a perfect source of uncertainty would bring.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ImprovementSummary {
     /// The source.
@@ -170,7 +170,7 @@ pub struct Assessment {
 }
 
 impl Assessment {
-    /// The assessment as a document, expanded uncertainties for a probability of `coverage`.
+    /// The assessment as a JSON document, expanded uncertainties for a probability of `coverage`.
     pub fn report(&self, coverage: f64) -> AssessmentReport {
         let Self { model, fit, cleaned, budget, validity, patterns, prediction, result, .. } = self;
         let objections = result.objections();

@@ -1,4 +1,4 @@
-//! Calibrations of one unit compared, as a document: schema `centrical-comparison/1`.
+//! Calibrations of one unit compared, as a JSON document: schema `centrical-comparison/1`.
 
 use std::path::Path;
 

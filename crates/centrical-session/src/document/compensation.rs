@@ -1,4 +1,4 @@
-//! What became of a compensated record, as a document: schema `centrical-compensation/1`.
+//! What became of a compensated record, as a JSON document: schema `centrical-compensation/1`.
 
 use serde::Serialize;
 

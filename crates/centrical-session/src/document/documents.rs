@@ -1,4 +1,4 @@
-//! The documents that were made of a result, as a document: schema `centrical-documents/1`.
+//! The documents that were made of a result, as a JSON document: schema `centrical-documents/1`.
 
 use std::path::Path;
 

@@ -1,4 +1,4 @@
-//! A drafted experiment file, as a document: schema `centrical-draft/1`.
+//! A drafted experiment file, as a JSON document: schema `centrical-draft/1`.
 
 use std::path::Path;
 

@@ -12,11 +12,11 @@ use serde::ser::Serializer;
 
 use crate::error::Error;
 
-/// Gives documents, each beside the name of its schema, their text.
+/// Gives JSON documents, each beside the name of its schema, their text.
 macro_rules! documents {
     ($($document:ty: $schema:expr,)*) => {
         $(impl $document {
-            /// The text of the document.
+            /// The text of the JSON document.
             ///
             /// # Errors
             /// [`Error::Json`](crate::Error::Json) when a value has no place in JSON.
@@ -28,17 +28,17 @@ macro_rules! documents {
 }
 pub(super) use documents;
 
-/// A document over many lines.
+/// A JSON document over many lines.
 pub(super) fn document(name: &'static str, value: &impl Serialize) -> Result<String, Error> {
     ended(name, serde_json::to_string_pretty(value))
 }
 
-/// A document on one line.
+/// A JSON document on one line.
 pub(crate) fn line(name: &'static str, value: &impl Serialize) -> Result<String, Error> {
     ended(name, serde_json::to_string(value))
 }
 
-/// Writes a document on one line, whole or not at all.
+/// Writes a JSON document on one line, whole or not at all.
 pub(super) fn write_line(name: &'static str, value: &impl Serialize, file: &Path) -> Result<(), Error> {
     let text = line(name, value)?;
     Ok(write_stream(file, |output| output.write_all(text.as_bytes()))?)

@@ -1,4 +1,4 @@
-//! Rival models compared, as a document: schema `centrical-models/1`.
+//! Rival models compared, as a JSON document: schema `centrical-models/1`.
 
 use centrical::Rival;
 use centrical::uncertainty::{FittedCandidate, ModelSelection};

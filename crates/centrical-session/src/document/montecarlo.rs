@@ -1,4 +1,4 @@
-//! The calibration repeated on drawn readings, as a document: schema `centrical-montecarlo/1`.
+//! The calibration repeated on drawn readings, as a JSON document: schema `centrical-montecarlo/1`.
 
 use centrical::uncertainty::{MonteCarlo, ParameterStatistics, Settings, WeightedSquare};
 use centrical::{Group, Parameters};
@@ -75,7 +75,8 @@ pub struct RepeatedParameter {
     /// Part of the runs whose interval covers the truth.
     pub covered: Option<f64>,
     /// Whether lost combinations of unknowns leave doubt in it that is not in `stated`.
-    pub leans_on_lost: bool,
+    #[serde(rename = "leans_on_lost")]
+    pub is_affected_by_null_space: bool,
 }
 
 /// A quadratic form over all runs, beside the chi^2 distribution that it should have.
@@ -117,7 +118,7 @@ impl MonteCarloReport {
                 standard_deviation: number(|s| s.standard_deviation).filter(|_| runs > 1),
                 bias: number(|s| s.bias),
                 covered: number(|s| s.coverage),
-                leans_on_lost: monte_carlo.parameters[j].is_some_and(|s| s.is_affected_by_null_space),
+                is_affected_by_null_space: monte_carlo.parameters[j].is_some_and(|s| s.is_affected_by_null_space),
             }
         };
         Self {

@@ -1,4 +1,5 @@
-//! What an experiment can see, as a document: schema `centrical-observability/1`. The same design gives the same bytes.
+//! Observability of an experiment, as a JSON document: schema `centrical-observability/1`. The same design gives the
+//! same bytes.
 
 use std::path::PathBuf;
 
@@ -73,7 +74,7 @@ impl From<PlannedSession> for Subject {
     }
 }
 
-/// What an experiment can see, why not more, and what would help.
+/// Observability of an experiment: rank, undetermined combinations, their causes and remedies.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ObservabilityReport {
     /// `centrical-observability/1`.

@@ -1,4 +1,4 @@
-//! A plan as a document: schema `centrical-plan/1`. The same input gives the same bytes.
+//! A plan as a JSON document: schema `centrical-plan/1`. The same input gives the same bytes.
 
 use centrical::Group;
 use serde::Serialize;
@@ -37,7 +37,7 @@ pub struct PlanReport {
     pub nodes: usize,
     /// Of a plan for goals: no schedule of the candidates that is shorter meets them, with type B as in this plan [s].
     pub least_time: Option<f64>,
-    /// Whether it is for a unit of typical errors, signs in turn: see [`centrical::plan::Task::plan`].
+    /// Whether it is for a unit with typical errors of alternating sign: see [`centrical::plan::Task::plan`].
     pub for_typical: bool,
     /// Plateaus to choose from.
     pub candidates: usize,

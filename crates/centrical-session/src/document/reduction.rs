@@ -1,4 +1,4 @@
-//! The plateau means of a session, as a document: schema `centrical-reduction/1`.
+//! The plateau means of a session, as a JSON document: schema `centrical-reduction/1`.
 
 use std::path::Path;
 

@@ -1,4 +1,4 @@
-//! A simulated session, as a document: schema `centrical-simulation/1`.
+//! A simulated session, as a JSON document: schema `centrical-simulation/1`.
 
 use std::path::Path;
 

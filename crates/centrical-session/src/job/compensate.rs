@@ -209,7 +209,7 @@ fn compensate_rows(
 }
 
 impl CompensatedRecord {
-    /// What became of the record of `request`, as a document.
+    /// What became of the record of `request`, as a JSON document.
     pub fn report(
         &self,
         request: &CompensationRequest,

@@ -111,7 +111,7 @@ impl MonteCarloCase {
             .map_err(|source| Error::fit(&self.file, source))
     }
 
-    /// What the runs of `request` show, as a document.
+    /// What the runs of `request` show, as a JSON document.
     pub fn report(&self, request: &MonteCarloRequest, monte_carlo: &MonteCarlo) -> MonteCarloReport {
         MonteCarloReport::of(self.model.parameters(), &self.truth, &self.weighted_by, &request.settings(), monte_carlo)
     }

@@ -1,4 +1,4 @@
-//! A session folder that is followed while it is being filled.
+//! A session folder that is monitored while the laboratory is still adding records.
 
 mod arrivals;
 mod board;

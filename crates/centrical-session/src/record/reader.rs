@@ -134,9 +134,13 @@ impl RecordReader {
     /// Time never decreases from row to row; it may stand still, as real streams repeat samples.
     ///
     /// # Errors
-    /// If the file cannot be read, has no rows, lacks a column, or a value is not finite (unless such rows are left out); if time runs
-    /// backwards; if the file names other units than those of the columns; at the end, if two readings of a session are the same, or
-    /// its time is of years.
+    /// [`Error`]:
+    /// - if the file cannot be read, has no rows or lacks a column;
+    /// - if a value is not finite, unless such rows are left out;
+    /// - if time runs backwards;
+    /// - if the file names other units than those of the columns;
+    /// - at the end, if two readings of a session are the same;
+    /// - at the end, if its time spans more than ten years.
     pub fn next_batch(&mut self) -> Result<Option<&mut [Rows]>, Error> {
         let is_over = match &mut self.table {
             Tables::One(table) => table.next_batch()?.is_none(),

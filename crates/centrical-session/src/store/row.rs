@@ -18,7 +18,7 @@ pub enum Status {
     Failed,
 }
 
-/// Why there is no result: empty where something is not known.
+/// Reason for a missing result; unknown fields are empty.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Failure {
     /// The message.

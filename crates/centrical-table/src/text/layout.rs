@@ -101,9 +101,9 @@ impl Layout {
         }
     }
 
-    /// Whether a line that starts with `#` is not a comment but a row whose first cell a spreadsheet could not compute, in whatever language
-    /// it says so: the `#` is glued to a word, there are as many cells as in the other rows, and where numbers belong stand numbers or other
-    /// such words. A row that is commented out has a number behind its `#`. A word alone ends with `!` or `?`.
+    /// Whether a `#` line is a data row whose first cell is a spreadsheet error, of any language, and not a comment. The `#` adjoins a word,
+    /// the number of cells matches, and numeric columns hold numbers or such words. In a row that is commented out a number follows the `#`.
+    /// A word alone ends with `!` or `?`.
     #[cold]
     pub fn is_failed_row(&self, line: &[u8]) -> bool {
         // The first bytes show most comments for what they are: a packed file may have a billion of them.

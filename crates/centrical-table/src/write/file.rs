@@ -38,7 +38,7 @@ impl Beside {
     pub fn create(file: &Path) -> io::Result<(Self, File)> {
         let before = fs::metadata(file).ok();
         if before.as_ref().is_some_and(|metadata| !metadata.is_file()) || is_of_system(file, folder_of(file)) {
-            return Err(io::Error::other("found something that is no regular file, expected a file or a free name"));
+            return Err(io::Error::other("found a path that is not a regular file, expected a file or a free name"));
         }
         if before.as_ref().is_some_and(|metadata| metadata.permissions().readonly()) {
             return Err(io::Error::other(
@@ -230,7 +230,7 @@ mod tests {
         let open = File::create(&file).unwrap();
         let link = format!("/proc/self/fd/{}", open.as_raw_fd());
         let message = write_whole(Path::new(&link), b"out").unwrap_err().to_string();
-        assert!(message.contains("no regular file"), "{message}");
+        assert!(message.contains("not a regular file"), "{message}");
         assert_eq!(fs::read(&file).unwrap(), b"");
     }
 

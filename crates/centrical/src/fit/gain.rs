@@ -40,7 +40,7 @@ impl Gain {
         let (equations, misfit) = structure.held.equations(&design, &DVector::from_column_slice(at), hold);
         let (parameters, priors) = (data.model().parameters().len(), data.model().priors().len());
         let basis = equations.basis(3 * data.observations().len());
-        // What a last step would take up would pass for much of a column that the unknowns follow all but wholly.
+        // A remaining step would look like a large part of a column that the unknowns almost reproduce.
         let step = equations.rotated(DMatrix::from_columns(&[misfit])).rows_range(..basis.ncols()).into_owned();
         let (mut residuals, followed) = (design.misfit, &basis * step);
         residuals.rows_range_mut(..followed.nrows()).axpy(-1.0, &followed.column(0), 1.0);

@@ -1,11 +1,12 @@
 //! The square-root information form `R x = b` and its update by Givens rotations.
 //!
-//! `R` is upper triangular, `R^T R` is the information (inverse covariance) and `R^-1 b` the estimate; neither a
-//! covariance nor an inverse is ever formed by an update, so there is no symmetry or definiteness to lose, and a
-//! state that is still unknown is a row of zeros. Rotations and not reflections, because rows of very
-//! different weight meet: a rotation takes from each row a multiple of the other of the size of the lighter one, so
-//! a weak prior keeps its digits beside a strong reading, where a reflection would leave it rounding of the
-//! strong one.
+//! `R` is upper triangular, `R^T R` is the information (inverse covariance) and `R^-1 b` the estimate. An update forms
+//! neither a covariance nor an inverse, so there is no symmetry or definiteness to lose. A state that is still unknown
+//! is a row of zeros.
+//!
+//! We use rotations because rows differ greatly in weight. A rotation changes each row by a multiple of the other, of
+//! the size of the lighter one. So it preserves the digits of a weak prior beside a strong reading; a reflection would
+//! replace them by rounding errors of the strong one.
 
 use nalgebra::{DMatrix, DVector, Vector3};
 

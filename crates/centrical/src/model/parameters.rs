@@ -9,9 +9,10 @@ use super::extension::Extension;
 use super::group::Group;
 use super::parameter::{Kind, Parameter, coefficient, parameter};
 
-/// The unknowns of an experiment in the order of `X` [K5.4]: `alpha`, `delta` by position, `dR` by pair (by
-/// position when free), `drho`, `theta` by rest in a free attitude, `case_turn` where such attitudes are known, the coefficients of the error model, then the extensions
-/// as asked for. Without an arm `alpha` and `drho` are absent.
+/// The unknowns of an experiment in the order of `X` [K5.4]. First come `alpha`, `delta` by position, `dR` by pair (by
+/// position when free) and `drho`. Then come `theta` by rest in a free attitude, `case_turn` where such attitudes are
+/// known, the coefficients of the error model, and the extensions as asked for. Without an arm `alpha` and `drho` are
+/// absent.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Parameters {
     list: Vec<Parameter>,

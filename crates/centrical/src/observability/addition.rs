@@ -9,9 +9,9 @@ use crate::model::{Experiment, FitError, MeasurementModel, Mounting, PairRelatio
 
 /// One addition to an experiment.
 ///
-/// The order of the variants is the order of cost, cheapest first: plateaus more in a mounting that is made
-/// anyway (minutes), a dimension measured on the bench, mountings more (an hour each), a new attitude (a fixture),
-/// and last a fixture that holds the unit differently in its pairs, for which every mounting is made anew.
+/// Variants are ordered by cost: further plateaus in mountings made anyway (minutes); a dimension measured on the
+/// bench; further mountings (an hour each); a new attitude, which needs a fixture. A fixture that holds the unit
+/// differently in its pairs comes last, because every mounting is repeated with it.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Addition {
     /// A plateau at rest at one more angle.

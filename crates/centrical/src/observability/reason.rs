@@ -225,7 +225,7 @@ fn cause_text(cause: Cause, study: &Study) -> &'static str {
     let set_points = &study.model().experiment().set_points;
     let nothing_at_rest = !study.weights().iter().any(|w| set_points[w.set_point].is_rest());
     match cause {
-        Cause::Angle if nothing_at_rest => "a plateau at rest, of which there is none,",
+        Cause::Angle if nothing_at_rest => "a plateau at rest (the experiment has none)",
         Cause::Angle => "another angle at rest",
         Cause::Speed => "another speed",
         Cause::Radius => "another radius",

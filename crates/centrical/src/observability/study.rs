@@ -9,7 +9,7 @@ use crate::model::{FitError, Linearisation, MeasurementModel, Prior, Weight};
 use super::combination::Combination;
 use super::rank::Observability;
 
-/// What a design can see, with all that is needed to say why, and what would help.
+/// Observability of a design: rank and undetermined combinations, with all that their causes and remedies follow from.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Study {
     model: MeasurementModel,

@@ -27,7 +27,7 @@ pub enum PlanError {
     #[error("found expected unknowns of another number than the model's parameters, expected one for each")]
     Nominal,
     /// The noise of a candidate is invalid.
-    #[error("candidate {}: found noise that is no covariance, expected finite noise above 0", candidate + 1)]
+    #[error("candidate {}: found an invalid noise covariance, expected finite noise above 0", candidate + 1)]
     Noise {
         /// Its index.
         candidate: usize,

@@ -4,10 +4,9 @@
 //! that a calibration makes of its data, so that what is predicted is what will be stated.
 //!
 //! **With a short rank** a unit without errors is not a point to predict at. Products of two unknowns couple a lost
-//! combination to the others wherever these are not zero, be it by their errors of estimation alone: at zero the scatter of
-//! calibrations of [K5.5] as printed is 1.12 times the prediction in `delta_2[3]`, and as much with a hundredth of the noise.
-//! Away from zero the two agree. So such a plan is predicted for a unit of typical errors, signs in turn, as
-//! `montecarlo` draws it.
+//! combination to the others where these are not zero; their estimation errors alone suffice. At zero, calibrations of [K5.5]
+//! as printed scatter by 1.12 times the prediction in `delta_2[3]`, and as much with a hundredth of the noise. Away from zero
+//! the two agree. So such a plan is predicted for a unit with typical errors of alternating sign, as `montecarlo` draws it.
 //!
 //! A plan of full rank is predicted for a unit without errors. Where the speeds' errors outweigh the noise this matters: they act along
 //! one known direction in each plateau, and turns and misalignments of a real unit, some 1e-4 rad, mix that direction into
@@ -50,8 +49,8 @@ impl Prediction {
 }
 
 impl Prediction {
-    /// The unknowns that a plan is predicted for, and its calibrations are drawn for: those expected, or where none is and the
-    /// rank is short, typical ones, signs in turn.
+    /// The unknowns that a plan is predicted for, and its calibrations are drawn for: those expected; or, without any and with
+    /// a short rank, typical ones of alternating sign.
     ///
     /// # Errors
     /// As [`predict`].

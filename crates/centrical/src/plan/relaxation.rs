@@ -7,10 +7,10 @@
 //!
 //! `Phi / (g_0 + max over the polytope of sum g w)`,
 //!
-//! since `Phi` is homogeneous of degree -1 and convex in `M`: for linear criteria by Cauchy and Schwarz, for determinants by
-//! the tangent plane, for the worst of several goals by the linear criterion of their weights, for several scenarios by
-//! Jensen, the worst of them by their mean with any weights. The maximum is a linear programme over a knapsack, bounded from
-//! above by any Lagrange multiplier.
+//! since `Phi` is homogeneous of degree -1 and convex in `M`. For linear criteria this follows from Cauchy and Schwarz,
+//! for determinants from the tangent plane, for several scenarios from Jensen. The worst of several goals follows by
+//! the linear criterion of their weights, the worst of several scenarios by their mean with any weights. The maximum is
+//! a linear programme over a knapsack, bounded from above by any Lagrange multiplier.
 //!
 //! The optimum is sought by multiplicative steps, which gather the candidates that matter, and then by sequential quadratic
 //! programming, whose inner problems are solved by exchange of time between pairs of candidates. Of many candidates a part is

@@ -196,7 +196,7 @@ pub enum ReductionError {
     /// Sampling and rotation in step: a constant and the once-per-revolution term cannot be separated.
     #[error(
         "plateau {}: {omega:.4} rad/s sampled every {interval:.6} s shows the same phase of the revolution each time; \
-         its mean cannot be told from the once-per-revolution term; expected another rate, or time in another unit", index + 1
+         its mean cannot be separated from the once-per-revolution term; expected another rate, or time in another unit", index + 1
     )]
     RevolutionAliased {
         /// Index of the plateau in the schedule.

@@ -14,10 +14,10 @@
 //! So the mean reading, drawn out from the bias by the ratio of `g` to `|f_0|`, is that of a rest in the attitude of `f_0`, whatever bias, scale and
 //! misalignment are. For that ratio an ellipsoid through all means is enough: of second order in the angle, it takes bias and scale coarsely.
 //!
-//! What is noise along the force shows in the size of the readings by that ellipsoid, over whole stretches of rotation. Noise that changes the
-//! size is that along the normal of the ellipsoid: a reading itself points elsewhere by as much as its bias, and what trembles across the
-//! force, a thousand times stronger in a hand, would be taken for noise along it. Proof masses beside the axes are accelerated by their place
-//! times the second derivative of the vertical. That is not noise either, and is taken out.
+//! Noise along the force shows in the size of the readings by that ellipsoid, over whole stretches of rotation. The noise that changes this
+//! size lies along the ellipsoid's normal. The reading itself deviates from the normal by the bias, so transverse hand tremor, a thousand
+//! times stronger, would be mistaken for noise along the force. Proof masses beside the axes are accelerated by their place times the second
+//! derivative of the vertical. That is not noise either, and is taken out.
 
 use std::f64::consts::TAU;
 

@@ -1,7 +1,7 @@
 //! Equivalent degrees of freedom: a variance estimate scatters as chi^2 over its degrees of freedom.
 //!
 //! Difference estimators: C. A. Greenhall and W. J. Riley, "Uncertainty of stability variances based on finite
-//! differences", 35th PTTI Meeting, 2003 [GR]; its letters are kept: d order, m averaging factor, F = m (F = 1 if
+//! differences", 35th PTTI Meeting, 2003 [GR]. Its letters are kept: d order, m averaging factor, F = m (F = 1 if
 //! modified) filter factor, S = m (S = 1 if not overlapping) stride factor, M terms, r = M / S, alpha the power law.
 //! Total estimators: W. J. Riley, NIST Special Publication 1065, tables 7 (total) and 8 (modified total), p. 41, and
 //! its formula for the Hadamard total.

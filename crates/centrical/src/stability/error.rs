@@ -154,7 +154,7 @@ pub enum NoiseError {
         expected: usize,
     },
     /// BridgedGaps leave too little of the record in one piece.
-    #[error("found {missing} of {readings} readings missing, expected stretches of which a tenth is missing at most")]
+    #[error("found {missing} of {readings} readings missing, expected at most a tenth missing in each stretch")]
     TooManyGaps {
         /// Readings missing.
         missing: usize,

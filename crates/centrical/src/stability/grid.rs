@@ -18,16 +18,19 @@ pub(super) struct Grid {
 impl Grid {
     /// Lays the readings `y`, taken at the times `t` (s), on a regular grid.
     ///
-    /// The interval is first the median step; every step counts for the nearest whole number of intervals (a step of
-    /// less than half an interval is a repeated sample, which is dropped); then the interval is refined to the mean over
-    /// the span, so a step printed with few digits does not drift off the grid. Non-finite readings are missing ones. `progress` is asked
-    /// again and again.
+    /// The first interval is the median step. Each step counts as its nearest whole number of intervals; a step below
+    /// half is a repeated sample and is dropped. The mean over the span then refines the interval, so that steps
+    /// printed with few digits do not drift off the grid. Non-finite readings are missing ones. `progress` is called
+    /// repeatedly.
     ///
     /// # Errors
-    /// [`NoiseError`] if `t` and `y` differ in length, hold fewer than 3 samples, `t` is not finite or runs backwards,
-    /// or fewer than half of the spanned grid points have a sample; if more than a hundredth of the samples are repeated but differ
-    /// ([`NoiseError::CoarseStamps`]); if the interval changes by more than a hundredth ([`NoiseError::ChangingRate`]);
-    /// [`NoiseError::Stopped`].
+    /// [`NoiseError`]:
+    /// - if `t` and `y` differ in length, or hold fewer than 3 samples;
+    /// - if `t` is not finite, or runs backwards;
+    /// - if fewer than half of the spanned grid points have a sample;
+    /// - if more than a hundredth of the samples are repeated but differ ([`NoiseError::CoarseStamps`]);
+    /// - if the interval changes by more than a hundredth ([`NoiseError::ChangingRate`]);
+    /// - if the caller stops ([`NoiseError::Stopped`]).
     pub fn of(t: &[f64], y: &[f64], progress: OnProgress<()>) -> Result<Grid, NoiseError> {
         check(t, y)?;
         let mut steps: Vec<f64> = t.windows(2).map(|pair| pair[1] - pair[0]).filter(|&step| step > 0.0).collect();

@@ -49,11 +49,11 @@ impl Phase {
 
     /// The integral of readings taken every `tau0` seconds: x_(k+1) = x_k + (y_k - mean) tau0.
     ///
-    /// A reading that is not finite is missing. Missing readings at the ends are cut off. A run of L missing ones
-    /// inside is bridged by a straight line between the means of the readings within L on either side: for white
-    /// noise such a bridge adds less variance than the readings it stands for (a line between the two neighbours
-    /// alone would add more). [`Phase::gaps`] counts the bridged readings; the estimators built on differences omit
-    /// every term with more than a tenth of them. `progress` is asked between the passes over the readings.
+    /// A reading that is not finite is missing. Missing readings at the ends are cut off. A straight line between the
+    /// means of the readings within L on either side bridges a gap of length L. For white noise it adds less variance
+    /// than the missing readings had; a line between the two neighbours alone would add more. [`Phase::gaps`] counts
+    /// the bridged readings; the estimators built on differences omit every term with more than a tenth of them.
+    /// `progress` is asked between the passes over the readings.
     ///
     /// # Errors
     /// [`NoiseError`] if `tau0` is not positive or fewer than 2 readings are finite; [`NoiseError::Stopped`].

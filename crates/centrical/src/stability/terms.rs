@@ -143,10 +143,10 @@ impl NoiseTerms {
     ///
     /// Q, N, B, K come from the overlapping Hadamard variances at tau0, 2 tau0, 4 tau0, ... (the Allan variance would
     /// take a ramp for random walk): their logarithms are fitted by least squares with the full covariance that the
-    /// fitted spectrum implies, the squared coefficients held non-negative. All four are always free, so the uncertainty
-    /// of each allows for any of the others. A term is determined if a record without it, the others free to take its
-    /// place, costs 3^2 or more in chi-squared (for Gaussian residuals an absent term reaches that once in 700
-    /// records); else its upper bound is where chi-squared has risen by 1.645^2.
+    /// fitted spectrum implies, the squared coefficients held non-negative. All four are always free, so the
+    /// uncertainty of each allows for any of the others. A term is determined if a fit without it, the others free to
+    /// take its place, costs 3^2 or more in chi-squared. For Gaussian residuals an absent term reaches that once in 700
+    /// records. Otherwise its upper bound is where chi-squared has risen by 1.645^2.
     ///
     /// The ramp is the least-squares slope of the readings, with the uncertainty that the fitted noise gives a slope; it
     /// is determined if it exceeds three times what the other terms, undetermined ones at their upper bounds, explain. `progress` is asked

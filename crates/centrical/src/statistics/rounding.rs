@@ -2,10 +2,10 @@
 
 use std::f64::consts::PI;
 
-/// Variance of the bias that rounding to the digit `d` leaves in the mean of readings of variance `v` that move by a cosine of
-/// amplitude `a`, the level being anywhere between two digits:
-/// `sum_k d^2 / (2 pi^2 k^2) exp(-4 pi^2 k^2 v / d^2) J_0(2 pi k a / d)^2` (Widrow and Kollar, Quantization Noise, 2008):
-/// `d^2 / 12` without noise and motion, and negligible once the noise is a digit.
+/// Variance of the bias that rounding to the digit `d` leaves in a mean. The readings have the variance `v` and move by a
+/// cosine of amplitude `a`; their level lies anywhere between two digits. The variance is
+/// `sum_k d^2 / (2 pi^2 k^2) exp(-4 pi^2 k^2 v / d^2) J_0(2 pi k a / d)^2` (Widrow and Kollar, Quantization Noise, 2008). It
+/// is `d^2 / 12` without noise and motion, and negligible once the noise is a digit.
 pub fn bias_variance(digit: f64, variance: f64, amplitude: f64) -> f64 {
     // The hundredth term is 1e-4 of the first at most; what has faded so far is nothing beside any noise.
     const TERMS: i32 = 100;

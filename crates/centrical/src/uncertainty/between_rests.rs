@@ -5,11 +5,11 @@
 //!
 //! `E + v B K B^T + w D D^T`, `K_ij = (u_i . u_j) exp(-|i - j| / l)`.
 //!
-//! A column of `B` is a unit reading along the specific force `u_i` of one rest, and `K` the correlation of these where the readings of each
-//! newtonometer are correlated over `l` rests: flicker noise, and the arcs of slow rotation, which follow one another without a pause. A column of
-//! `D` is the bias of one newtonometer that changes by one unit from the first rest to the last. All are whitened by the noise within rests, and
-//! freed of what the unknowns of the fit follow. The variances `v` and `w` are posterior means over all strengths and lengths: absence of either is as
-//! likely beforehand as all its strengths together, and no strength or length is preferred (as for the noise within rests,
+//! A column of `B` is a unit reading along the specific force `u_i` of one rest. `K` is the correlation of these where the readings of each
+//! newtonometer are correlated over `l` rests. Flicker noise does that, and the arcs of slow rotation, which follow one another without a pause. A
+//! column of `D` is the bias of one newtonometer that changes by one unit from the first rest to the last. All are whitened by the noise within
+//! rests, and freed of what the unknowns of the fit follow. The variances `v` and `w` are posterior means over all strengths and lengths: absence of
+//! either is as likely beforehand as all its strengths together, and no strength or length is preferred (as for the noise within rests,
 //! `reduction/colour/posterior.rs`). So the uncertainties include what the residuals cannot exclude, and grow little where an effect is absent.
 //!
 //! A fit takes scatter as independent. That which is correlated moves the coefficients farther, and counts as the independent one that would move

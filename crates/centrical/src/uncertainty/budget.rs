@@ -1,8 +1,8 @@
-//! The budget: the uncertainty that each source leaves in each parameter.
+//! The budget: the uncertainty that each source of uncertainty leaves in each parameter.
 //!
-//! A source is a set of independent errors: of single plateaus, of priors, of influences. The gain of the fit takes one
-//! standard uncertainty of each to the parameters. With these changes as the columns of `S`, the source leaves the
-//! covariance `S S^T`. Sources add, and their sum is the covariance of the fit.
+//! A source of uncertainty is a set of independent errors: of single plateaus, of priors, of influences. The gain of
+//! the fit takes one standard uncertainty of each to the parameters. With these changes as the columns of `S`, the
+//! source leaves the covariance `S S^T`. Sources add, and their sum is the covariance of the fit.
 
 use nalgebra::{DMatrix, Vector3};
 
@@ -14,7 +14,7 @@ use crate::model::{FitError, MeasurementModel, Observation, Source};
 /// A parameter is affected by the null space when that leaves more than this part of its variance.
 const AFFECTED: f64 = 0.1;
 
-/// What every source leaves in every parameter.
+/// What every source of uncertainty leaves in every parameter.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Budget {
     contributions: Vec<Contribution>,
@@ -24,7 +24,7 @@ pub struct Budget {
     residual_scale: Option<usize>,
 }
 
-/// What one source leaves.
+/// What one source of uncertainty leaves.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Contribution {
     /// The source.

@@ -73,8 +73,8 @@ impl Comparison {
         Self { differences, chi_squared, probability }
     }
 
-    /// Whether the two agree: neither the joint test nor any parameter alone speaks against it. Each of the two has half of the
-    /// level, so that 1 % of unchanged pairs at most are said to disagree. Without a parameter in common they do not agree.
+    /// Whether the two agree: neither the joint test nor the test of any parameter rejects it. Each of the two has half of the
+    /// level, so that at most 1 % of unchanged pairs are said to disagree. Without a common parameter they do not agree.
     pub fn agrees(&self) -> bool {
         let agree_jointly =
             self.probability.is_some_and(|probability| probability > 0.5 * Level::Disagreement.probability());

@@ -18,10 +18,11 @@ const TERMS: usize = 4;
 const DEPENDENT: f64 = 1e-3;
 
 impl Slope {
-    /// Creep of rests that follow another one in their record, given their slope, mean reading, and change of the mean since the rest before,
-    /// [m/s^3] and [m/s^2]: slope over the change [1/s], positive where readings go on in the direction of the change; its standard uncertainty,
-    /// by the noise within rests or the scatter of the slopes, whichever is larger [1/s]; and its F test. `None` where the rests are too few, or
-    /// drift and creep are one.
+    /// Creep of rests that follow another one in their record, from slope [m/s^3], mean reading and its change since the previous rest [m/s^2].
+    ///
+    /// Returns creep, its standard uncertainty [1/s] and its F test. Creep is slope over change, positive if the reading continues in the
+    /// direction of the change. Its uncertainty follows from the noise within rests or the scatter of the slopes, whichever is larger. `None` if
+    /// the rests are too few, or drift and creep cannot be separated.
     pub fn creep(rests: &[(Slope, Vector3<f64>, Vector3<f64>)]) -> Option<([f64; 2], Test)> {
         let degrees_of_freedom = rests.len().checked_sub(TERMS).filter(|count| *count > 0)?;
         let mut design = DMatrix::zeros(rests.len(), TERMS);

@@ -1,8 +1,8 @@
 //! Monte Carlo: the whole calibration repeated on drawn readings, to see whether its uncertainties are true.
 //!
-//! Each run draws the noise of the means, the speeds of the plateaus, every type B influence and, for unknowns with a
-//! prior, their true values from it; lets the exact model make the readings, and fits them as if nothing were off. Run `n` uses stream `n` of the seed, and runs are gathered
-//! in their order, so the outcome does not depend on the number of threads.
+//! Each run draws the noise of the means, the speeds of the plateaus, every type B influence, and unknowns with a prior
+//! from that prior. The exact model generates the readings, and the fit ignores the errors drawn. Run `n` uses stream
+//! `n` of the seed, and runs are gathered in their order, so the outcome does not depend on the number of threads.
 
 use nalgebra::{Matrix3, Vector3};
 use rayon::prelude::*;

@@ -1,9 +1,9 @@
 //! Patterns in the residuals: what they would follow if something is missing in the model, each tested.
 //!
-//! A pattern is a column `z` of readings per unit of its amplitude. With `z_r`, `e_r` what is redundant of it and of the
-//! residuals (the part that no change of the unknowns can follow), the amplitude is `a = z_r . e_r / |z_r|^2` with standard
-//! uncertainty `1 / |z_r|`: the value it would have as one more unknown of the fit. `(a/u)^2` over the remaining chi^2 per
-//! degree of freedom is an F statistic, free of the scale of the weights.
+//! A pattern is a column `z` of readings per unit of its amplitude. Let `z_r`, `e_r` be the redundant part of it and of
+//! the residuals, which no change of the unknowns can follow. The amplitude is `a = z_r . e_r / |z_r|^2` with standard
+//! uncertainty `1 / |z_r|`: the value it would have as one more unknown of the fit. `(a/u)^2` over the remaining chi^2
+//! per degree of freedom is an F statistic, free of the scale of the weights.
 
 use nalgebra::Vector3;
 

@@ -6,8 +6,9 @@ use crate::model::{MeasurementModel, Observation};
 use crate::statistics::Test;
 
 impl MeasurementModel {
-    /// Every plateau that repeats a set point in its mounting, against the first one of it: the two set points; the second mean less the first,
-    /// and less what a difference of measured speeds explains [m/s^2]; the test of this difference by its covariance, speeds included.
+    /// Every plateau that repeats a set point in its mounting, against the first one of it. Returns the two set points, the difference of their
+    /// means [m/s^2] (second less first) and its test by its covariance, speeds included. The difference is without what a difference of
+    /// measured speeds explains.
     ///
     /// `plateaus` are all of the experiment's in their order. Speed errors act as at the unknowns `x`. A pair whose covariance is not positive
     /// definite is left out.

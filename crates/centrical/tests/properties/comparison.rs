@@ -20,9 +20,9 @@ fn compare(first: &Estimates, second: &Estimates) -> Comparison {
     Comparison::of(&names, [first, second])
 }
 
-/// Calibrations of an unchanged unit agree as often as they say: joint chi^2 has mean 21, and `|E_n| > 1` is as seldom as
-/// two standard uncertainties, which is in every other pair; of 40 pairs 0.4 are said to disagree, more than 3 in one case of a
-/// thousand. A bias that has moved by eight is found, by its own `E_n` and by the joint test.
+/// Calibrations of an unchanged unit agree as often as they say. Joint chi^2 has mean 21, and `|E_n| > 1` is as seldom as two
+/// standard uncertainties, which is in every other pair. On average 0.4 of 40 pairs are said to disagree, more than 3 in one
+/// case of a thousand. A bias that has moved by eight is found, by its own `E_n` and by the joint test.
 #[test]
 fn unchanged_units_agree_and_changes_show() {
     const PAIRS: usize = 40;

@@ -99,8 +99,8 @@ fn intervals_of_one_unit_cover() {
     }
 }
 
-/// Two sessions of eight that state a third of the uncertainty of the others do not pass for a line: at a level of 1/500 a slope is found in 3.1 %
-/// of all units that do not drift with the weights of the likeliest component alone.
+/// Two sessions of eight that state a third of the uncertainty of the others do not pass for a line. With the weights of the likeliest component
+/// alone, a slope is found at a level of 1/500 in 3.1 % of all units that do not drift.
 #[test]
 fn unequal_uncertainties_raise_no_drift() {
     const UNITS: u32 = 4000;

@@ -1,4 +1,4 @@
-//! Records that were taken down by mistake are named for what they are, and good ones are not blamed.
+//! Recording mistakes are named for what they are, and good records are not blamed.
 
 use centrical::STANDARD_GRAVITY;
 use centrical::reduction::{NoiseModel, Record, ReductionError};
@@ -176,10 +176,10 @@ fn a_plateau_cut_short_is_used_or_named() {
     assert!(said.starts_with("plateau 3 "), "{said}");
 }
 
-/// The mean of the samples that are left is that of all of them where there is nothing to leave out, but for one good
-/// sample in twenty plateaus and axes, at the limit of `sqrt(2 ln 20 n)` standard deviations: that moves the mean by
-/// `(2 ln 20 n) / n` of its variance, so the efficiency is above `1 - (2 ln 20 n) / (20 n)`, 0.999 of a thousand samples.
-/// One sample in ten being a spike, it is the mean of the good ones.
+/// Without spikes the mean of the remaining samples is that of all of them, but for one good sample in twenty plateaus
+/// and axes. That sample lies at the limit of `sqrt(2 ln 20 n)` standard deviations and moves the mean by
+/// `(2 ln 20 n) / n` of its variance. So the efficiency is above `1 - (2 ln 20 n) / (20 n)`, 0.999 of a thousand samples.
+/// With one spike in ten samples it is the mean of the good ones.
 #[test]
 fn robust_location_is_as_efficient_as_the_mean() {
     let (mut clean, mut spiked, mut count) = (0.0, 0.0, 0.0);

@@ -258,7 +258,7 @@ fn what_cannot_be_analysed_is_an_error() {
     let every_other: Vec<f64> = (0..1000).map(|k| if k % 2 == 0 { f64::NAN } else { f64::from(k % 7) }).collect();
     assert_eq!(
         NoiseTerms::of(&Phase::integrate(&every_other, TAU0, &unwatched).unwrap(), &unwatched).unwrap_err().to_string(),
-        "found 499 of 999 readings missing, expected stretches of which a tenth is missing at most"
+        "found 499 of 999 readings missing, expected at most a tenth missing in each stretch"
     );
     assert!(Spectrum::of(&[1.0; 100], TAU0, 200, &unwatched).is_err());
     assert!(Spectrum::of(&[f64::NAN; 100], TAU0, 16, &unwatched).is_err());

@@ -427,9 +427,9 @@ fn assert_uniform(probabilities: &mut [f64]) {
     assert!(distance < limit, "{distance} {limit}");
 }
 
-/// Followed on the exact model the innovations of good plateaus are as they should be too, where the linear model is off
-/// by second order; a plateau that is off is found at once and costs no other its place; and at the end the
-/// follower stands where the fit stands.
+/// On the exact model, too, the innovations of good plateaus are as they should be, where the linear model is off by
+/// second order. A plateau that is off is found at once and costs no other its place. At the end the follower agrees
+/// with the fit.
 #[test]
 fn a_followed_session() {
     let once = |relation| experiment(AxisOneUp, relation, &[1.0, 0.5]);
@@ -529,7 +529,7 @@ fn expectation_and_resumption_of_a_followed_session() {
 }
 
 /// A plateau that is grossly off, at any place of the session, is never an error and leaves the follower at a finite
-/// point, also when it is taken up; and it is alarmed wherever the plateaus before it predict it well enough to tell.
+/// point, also when it is taken up. It raises an alarm wherever the plateaus before it predict it well enough.
 #[test]
 fn a_gross_plateau_anywhere_is_alarmed_and_survived() {
     // By the linear filter on data without noise, the normalised innovation squared that the blow alone makes. A blow of

@@ -18,8 +18,9 @@ fn cross() -> Term {
     Term { name: "K_2[f1*f2]".to_owned(), group: Group::CrossCoupling, axis: 1, monomial: Monomial::product(&[0, 1]) }
 }
 
-/// A term of five standard uncertainties is kept at least 95 times in 100, an absent one rejected at least 95 times: by
-/// the model recommended and by the verdict on the term; a term of the preset (`G2_22`) as well as a further one.
+/// A term of five standard uncertainties is kept at least 95 times in 100, an absent one rejected at least 95 times.
+/// This holds for the recommended model and for the verdict on the term, for a term of the preset (`G2_22`) and for a
+/// further one.
 #[test]
 fn five_sigma_is_kept_and_nothing_is_rejected() {
     let (plain, rich) = (source_model(), with(&[cross()]));

@@ -252,8 +252,8 @@ fn predicted(model: &MeasurementModel) -> f64 {
     prediction.reading(force).unwrap()[0] / (1e-6 * centrical::STANDARD_GRAVITY)
 }
 
-/// 200 sessions of speeds that err by 10 ppm and are measured to 1 ppm: the squared error of 49 parameters over their stated
-/// covariance scatters by sqrt(2 / 49 / 200) = 1.4 %, and the stated uncertainty is the predicted one, 116 and not 814 ug.
+/// 200 sessions of speeds that err by 10 ppm and are measured to 1 ppm. The squared error of 49 parameters over their stated
+/// covariance scatters by sqrt(2 / 49 / 200) = 1.4 %. The stated uncertainty is the predicted one, 116 and not 814 ug.
 #[test]
 fn the_error_with_measured_speeds_is_as_stated() {
     const MEASURED: f64 = 1e-6;

@@ -17,9 +17,9 @@ fn printed_relation_session() {
     windows_and_means("printed-relation");
 }
 
-/// Windows inside the true ones, three quarters of each used; errors of the means of mean square one in units of
-/// their covariance: three degrees of freedom at rest, and two while spinning, across the direction in which the
-/// plateau's unknown speed error moves the reading. Bounds at four standard deviations of chi^2.
+/// Windows lie inside the true ones, and three quarters of each are used. Errors of the means have mean square one in
+/// units of their covariance, with three degrees of freedom at rest. While spinning there are two, across the direction
+/// in which the plateau's unknown speed error moves the reading. Bounds lie at four standard deviations of chi^2.
 fn windows_and_means(name: &str) {
     let session = Session::open(name);
     let reduced: Vec<ReducedMounting> = (0..session.mountings())

@@ -83,8 +83,8 @@ fn z6_as_printed() {
     assert!(z.amax() < 1e-13 && w * r_26 > 1.0, "{z:?}");
 }
 
-/// P_1, P_2 as printed; P_6 is the only rotation under which the printed `z^(6)` holds (the test above); pairs are turned
-/// by 180 deg about the vertical; in 3 and 4 axis 2 lies along the arm both ways and axis 1 is vertical.
+/// P_1, P_2 as printed; P_6 is the only rotation under which the printed `z^(6)` holds (the test above). Pairs are turned
+/// by 180 deg about the vertical. In 3 and 4 axis 2 lies along the arm both ways and axis 1 is vertical.
 #[test]
 fn positions_of_the_text() {
     let p: Vec<Matrix3<f64>> = Position::kozlov_2017(AxisOneUp).into_iter().map(|position| position.p_zy).collect();

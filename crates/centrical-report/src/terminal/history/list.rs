@@ -74,7 +74,7 @@ const fn words(kind: DoubtKind) -> (&'static str, &'static str) {
             "found results of one unit and day, expected one, or a switch-on between them: histories count each as a session",
         ),
         DoubtKind::NoDay => {
-            ("NO DAY", "found a date that is no day, expected one such as 2026-10-05: histories leave it out")
+            ("NO DAY", "found a text that is not a date, expected one such as 2026-10-05: histories leave it out")
         }
         DoubtKind::Ahead => ("AHEAD", "found a date later than today, expected the day of the session"),
         DoubtKind::LongAgo => ("LONG AGO", "found a date before 1980, expected the day of the session"),

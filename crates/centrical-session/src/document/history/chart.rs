@@ -1,4 +1,4 @@
-//! A control chart, as a document: schema `centrical-chart/1`.
+//! A control chart, as a JSON document: schema `centrical-chart/1`.
 
 use std::fmt::{self, Display, Formatter};
 

@@ -1,4 +1,4 @@
-//! One unit over its calibrations, as a document: schema `centrical-unit-history/1`.
+//! One unit over its calibrations, as a JSON document: schema `centrical-unit-history/1`.
 
 use std::collections::BTreeMap;
 

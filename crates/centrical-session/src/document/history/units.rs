@@ -1,4 +1,4 @@
-//! Units of one type beside each other, as a document: schema `centrical-units-history/1`.
+//! Units of one type beside each other, as a JSON document: schema `centrical-units-history/1`.
 
 use centrical::Group;
 use serde::Serialize;

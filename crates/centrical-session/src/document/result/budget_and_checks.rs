@@ -21,7 +21,7 @@ pub struct BudgetSummary {
     pub degrees_of_freedom: Vec<Option<f64>>,
 }
 
-/// What one source leaves in the parameters.
+/// What one source of uncertainty leaves in the parameters.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct BudgetSource {
     /// Which.

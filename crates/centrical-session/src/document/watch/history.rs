@@ -94,7 +94,7 @@ pub(crate) fn append_history(file: &Path, entry: &HistoryEntry) -> Result<(), Er
     // Only a regular file is followed, not a link or a pipe.
     let is_other = fs::symlink_metadata(file).is_ok_and(|metadata| !metadata.is_file());
     let opened = if is_other {
-        Err(io::Error::other("found something that is no regular file, expected the history or a free name"))
+        Err(io::Error::other("found a path that is not a regular file, expected the history or a free name"))
     } else {
         open.create(true).append(true).open(file)
     };

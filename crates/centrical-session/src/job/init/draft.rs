@@ -1,4 +1,4 @@
-//! What is asked of a draft, and its text with marks: what was found, what is guessed, and what is to be filled in.
+//! The request for a draft, and its text with marks: found, guessed, to be filled in.
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -53,7 +53,7 @@ pub struct Draft {
 pub(super) const UNKNOWN: &str = "\"?\"";
 
 impl Draft {
-    /// The draft as a document, written to `file` if to any.
+    /// The draft as a JSON document, written to `file` if to any.
     pub fn report(&self, file: Option<&Path>) -> DraftReport {
         DraftReport::new(file, &self.text, self.guesses, self.fill_in.clone())
     }

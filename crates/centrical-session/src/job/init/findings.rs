@@ -163,8 +163,8 @@ const ROUND: f64 = 5e-3;
 const GAP: f64 = 0.15;
 
 /// The radius of the seat of every mounting [m], from the radii of the proof masses along the arm. They differ from that of the reference
-/// point by the place of the proof mass, which turns its sign from position to position: the mean over the mountings of a seat is that of the
-/// seat to a few millimetres, and drawings have round numbers.
+/// point by the place of the proof mass, which turns its sign from position to position. So the mean over the mountings of a seat is that of
+/// the seat to a few millimetres, and drawings have round numbers.
 fn seats(attitudes: &[Option<Attitude>], radii: &[Option<f64>]) -> Vec<Option<f64>> {
     let seen: Vec<usize> = (0..radii.len()).filter(|&m| radii[m].is_some() && attitudes[m].is_some()).collect();
     let radius = |m: usize| radii[m].unwrap_or_default();

@@ -1,4 +1,4 @@
-//! What is asked of a plan, and its report, with plans beside it that are made without a search.
+//! The request for a plan, and its report, beside plans that are made without a search.
 
 use std::path::PathBuf;
 

@@ -1,4 +1,4 @@
-//! What is asked of a series, and one session of it: whatever becomes of it is a row.
+//! The request for a series, and one session of it: every outcome is a row.
 
 use std::collections::HashMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};

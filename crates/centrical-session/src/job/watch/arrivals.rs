@@ -1,4 +1,4 @@
-//! Which plateaus of a session folder have arrived while it is being filled.
+//! Which plateaus of a session folder are complete while the laboratory is still adding records.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -22,9 +22,9 @@ use crate::job::reduce::{ShownSpeeds, located, refuse_copies};
 
 /// A session folder that is looked into again and again.
 ///
-/// A plateau has come when one of its schedule that reads otherwise has begun after it, or when the record of its mounting is
-/// finished: it has been left alone for the time called quiet, or one of a later mounting is there and it shows its whole
-/// schedule. Plateaus that read alike, such as rests, follow each other unseen: part of one would pass for the next.
+/// A plateau is complete when a different plateau of its schedule has begun after it, or when the record of its mounting is
+/// finished. A record is finished after the quiet time, or when it shows its whole schedule and a record of a later mounting
+/// exists. Plateaus that read alike, such as rests, follow each other unseen: a piece of one would pass for the next.
 #[derive(Debug, Clone)]
 pub struct Watch<'s> {
     session: &'s Session,

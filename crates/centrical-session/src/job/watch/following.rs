@@ -101,9 +101,9 @@ impl<'a> Following<'a> {
         Ok(Some(board))
     }
 
-    /// Looks at the session again and again, until its schedule is complete or `stop` is raised; `None` when the files of further
-    /// rests have come, and the watch has to go on with the session [`rests::with_rests_there`], or plateaus that were taken up read
-    /// otherwise, and it has to begin anew.
+    /// Polls the session until its schedule is complete or `stop` is raised. Returns `None` if files of further rests have arrived,
+    /// or if an accepted plateau has changed. The caller then restarts, after further rests with the session
+    /// [`rests::with_rests_there`].
     ///
     /// # Errors
     /// [`Error`] when a finished record is wrong, or the folder does not take the state.

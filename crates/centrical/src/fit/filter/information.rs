@@ -2,9 +2,9 @@
 //!
 //! The unknowns carried are ordered by the end of their lifetimes, so that those to retire next stand in front. Their
 //! rows of the triangle, `R_rr x_r + R_ra x_a = b_r`, are all that the data of the past say about them given the
-//! others; they are laid aside as they are, and what remains of the triangle is the marginal information about
-//! the states that go on. Nothing is lost and nothing repeated: the rows laid aside and the last triangle together
-//! are the triangle of one batch, in which back substitution smooths every retired state.
+//! others. They are laid aside as they are. The rest of the triangle is the marginal information about the states that
+//! go on. Nothing is lost and nothing repeated: the rows laid aside and the last triangle together are the triangle of
+//! one batch, in which back substitution smooths every retired state.
 
 use nalgebra::{DMatrix, DVector, Vector3};
 

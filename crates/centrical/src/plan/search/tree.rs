@@ -4,16 +4,16 @@
 //! best. Visits are not branched on, so where the time hardly suffices for the set-ups, whole visits leave some percent open.
 //!
 //! **The bound is valid.** Let a schedule belong to a node: it uses the set-ups that are paid and perhaps some that are not
-//! decided, none that is closed. (1) Its visits are a point of the node's polytope: the repeats are the schedule's own; and
-//! the charge of an undecided set-up, `f x / U` for the time `x` in it, is at most its cost `f`, since no schedule spends
-//! more than `U` in it: every candidate as often and as long as possible, or all the available time. The difference between
-//! a position and a seat is paid so once for the position, by the time in all its undecided mountings together. So the
-//! schedule pays at least what the polytope asks for. Or the polytope asks for the least cost of the set-ups of a schedule of
-//! this node that is better than the incumbent ([`SetUpBound`]), and for nothing in proportion: where time hardly suffices for
-//! the set-ups this is much more. (2) The equivalence theorem bounds the criterion on the polytope from
-//! below at whatever design its sensitivities are taken, converged or not ([`crate::plan::relaxation`]). (3) The two
-//! children of a node hold all its schedules, a child inherits the bound of its parent, and [`Plan::bound`] is the lowest bound
-//! of the ends of all branches: left open, cut off against the incumbent, or not divided any further.
+//! decided, none that is closed. (1) Its visits are a point of the node's polytope. The repeats are the schedule's own. The
+//! charge of an undecided set-up, `f x / U` for the time `x` in it, is at most its cost `f`, since no schedule spends more than
+//! `U` in it. `U` is every candidate as often and as long as possible, or all the available time. The difference between a
+//! position and a seat is paid so once for the position, by the time in all its undecided mountings together. So the schedule
+//! pays at least what the polytope asks for. Or the polytope asks for the least cost of the set-ups of a schedule of this node
+//! that is better than the incumbent ([`SetUpBound`]), and for nothing in proportion: where time hardly suffices for the
+//! set-ups this is much more. (2) The equivalence theorem bounds the criterion on the polytope from below at whatever design
+//! its sensitivities are taken, converged or not ([`crate::plan::relaxation`]). (3) The two children of a node hold all its
+//! schedules, and a child inherits the bound of its parent. [`Plan::bound`] is the lowest bound of the ends of all branches:
+//! left open, cut off against the incumbent, or not divided any further.
 
 use rayon::prelude::*;
 

@@ -2,9 +2,10 @@
 //! of the schedule, and so a mistake is recognised by comparing likelihoods, not by limits.
 //!
 //! The nominal readings of one mounting lie on a line, `f = a + Omega^2 c`: gravity and the centripetal part. A record
-//! shows both. For every hypothesis `k S` (48 signed permutations `S` of the axes, three factors `k` of the unit), the
-//! distances of `k S a` and `k S c` from the observed line are computed, in half-widths of the law by which real units
-//! differ from nominal ones. These are two numbers, whatever the number of plateaus: a unit has the same errors on all.
+//! shows both. A hypothesis `k S` is one of 48 signed permutations `S` of the axes with one of three factors `k` of the
+//! unit. Of each the distances of `k S a` and `k S c` from the observed line are computed, in half-widths of the law by
+//! which real units differ from nominal ones. These are two numbers, whatever the number of plateaus: a unit has the
+//! same errors on all.
 
 use std::ops::Range;
 

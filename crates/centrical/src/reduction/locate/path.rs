@@ -1,8 +1,7 @@
 //! The most probable path of a record through its schedule, by dynamic programming (Viterbi 1967).
 //!
-//! A path begins in a transition or in a plateau; from block to block it stays, or goes from a plateau to the
-//! transition after it, or from a transition to the next plateau, or passes plateaus over at the odds that they are
-//! missing.
+//! A path starts in a transition or a plateau. At each block it stays, enters the next state, or skips plateaus with
+//! the odds that they are missing.
 //!
 //! The search of a long schedule takes time and memory that grow with the record and not with the schedule too.
 //! Every plateau is a steady stretch of the record. Of `N` plateaus and `S` stretches, number `N s / S` is expected in the block
@@ -60,7 +59,7 @@ impl Band {
     }
 }
 
-/// All paths of a record through a schedule, followed layer after layer.
+/// All paths of a record through a schedule, followed through [`LAYER`] blocks at a time.
 pub(super) struct Trellis {
     /// Plateaus that each block may belong to.
     plateaus: Vec<Range<usize>>,
@@ -70,7 +69,7 @@ pub(super) struct Trellis {
     reached: usize,
     /// Logarithm of the probability of the best path to each state: 2k is the transition before plateau k, 2k + 1 the plateau k.
     score: Vec<f64>,
-    /// Blocks of the layer, and their densities on each of its plateaus.
+    /// Blocks of the present [`LAYER`], and their densities on each of its plateaus.
     layer: Range<usize>,
     room: Vec<[f64; LAYER]>,
 }
@@ -94,14 +93,15 @@ impl Trellis {
         Self { plateaus, count, came_from, reached: 0, score, layer: 0..0, room: Vec::new() }
     }
 
-    /// Goes on to the next layer, and returns its first block; nothing at the end of the record.
+    /// Goes on to the next [`LAYER`], and returns its first block; nothing at the end of the record.
     pub fn next_layer(&mut self) -> Option<usize> {
         let from = self.layer.end;
         self.layer = from..self.plateaus.len().min(from + LAYER);
         (!self.layer.is_empty()).then_some(from)
     }
 
-    /// Each plateau that blocks of the layer may belong to, with room for the logarithms of their probability densities on it.
+    /// Each plateau that blocks of the [`LAYER`] may belong to, with room for the logarithms of their probability densities on
+    /// it.
     pub fn plateaus(&mut self) -> impl Iterator<Item = (usize, &mut [f64])> {
         let of_layer = &self.plateaus[self.layer.clone()];
         let all = of_layer[0].start..of_layer[of_layer.len() - 1].end;
@@ -109,7 +109,7 @@ impl Trellis {
         all.zip(self.room.iter_mut().map(|room| &mut room[..of_layer.len()]))
     }
 
-    /// Takes the layer, of whose blocks `between[i]` is the same logarithm in any transition.
+    /// Takes the [`LAYER`], of whose blocks `between[i]` is the same logarithm in any transition.
     pub fn take(&mut self, between: &[f64]) {
         let Self { plateaus, came_from, reached, score, layer, room, .. } = self;
         let first = plateaus[layer.start].start;
@@ -130,7 +130,7 @@ impl Trellis {
         }
     }
 
-    /// After the last layer: blocks of each plateau on the best path; an empty range for a plateau passed over.
+    /// After the last [`LAYER`]: blocks of each plateau on the best path; an empty range for a plateau passed over.
     pub fn best_path(&self) -> Vec<Range<usize>> {
         // The record may end anywhere: the remaining plateaus are passed over.
         let total = |state: &usize| self.score[*state] + ((2 * self.count - state) / 2) as f64 * MISSING.ln();
