@@ -4,6 +4,7 @@
 
 mod alarm;
 mod command;
+mod documents;
 mod given;
 mod help;
 mod interruption;

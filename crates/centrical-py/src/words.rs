@@ -69,7 +69,12 @@ pub fn one_of<T: Copy>(argument: &str, found: &str, words: &[(&str, T)]) -> PyRe
 /// # Errors
 /// As [`one_of`].
 pub fn method(word: &str) -> PyResult<Method> {
-    let words = [("exact", Method::Exact), ("recursive", Method::Recursive), ("linear", Method::Linear)];
+    let words = [
+        ("exact", Method::Exact),
+        ("recursive", Method::Recursive),
+        ("linear", Method::Linear),
+        ("recursive-linear", Method::RecursiveLinear),
+    ];
     one_of("method", word, &words)
 }
 

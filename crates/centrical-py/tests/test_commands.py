@@ -30,7 +30,8 @@ def result_file(result, tmp_path_factory):
 
 
 def test_calibrate(program):
-    for method, option in (("exact", []), ("recursive", ["--method", "recursive"]), ("linear", ["--linear"])):
+    for method, option in (("exact", []), ("recursive", ["--method", "recursive"]), ("linear", ["--linear"]),
+                           ("recursive-linear", ["--linear", "--method", "recursive"])):
         assert ct.calibrate(SESSION, method=method).to_json() == program("calibrate", SESSION, *option), method
     held_out = program("calibrate", SESSION, "--hold-out", "4:3", "--hold-out", "1:1")
     assert ct.Session(SESSION).calibrate(hold_out=["4:3", "1:1"]).to_json() == held_out

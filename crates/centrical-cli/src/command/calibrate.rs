@@ -8,7 +8,7 @@ use centrical_session::{
     wait_for_store,
 };
 
-use super::report::Documents;
+use crate::documents::Documents;
 use crate::output::{Outcome, Printing, remark, say, say_waiting};
 use crate::progress;
 
@@ -32,15 +32,15 @@ pub struct Arguments {
     /// Make the linear fit of [K5.3] alone, with its second-order error
     #[arg(long)]
     linear: bool,
-    /// How the exact fit is computed: all plateaus at once, or by the recursive filter, which gives the same estimates
-    #[arg(long, value_enum, default_value_t = FitMethod::Batch, conflicts_with = "linear")]
+    /// How the fit is computed: all plateaus at once, or by the recursive filter, which gives the same estimates
+    #[arg(long, value_enum, default_value_t = FitMethod::Batch)]
     method: FitMethod,
     /// Hold a plateau out of the fit, e.g. 4:3 for the third of the fourth mounting; may be repeated
     #[arg(long, value_name = "MOUNTING:PLATEAU")]
     hold_out: Vec<PlateauName>,
 }
 
-/// How the exact fit is computed.
+/// How the fit is computed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 enum FitMethod {
     Batch,
@@ -50,12 +50,13 @@ enum FitMethod {
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let session = Session::read(&arguments.session)?;
-    let method = match arguments.method {
-        _ if arguments.linear => Method::Linear,
-        FitMethod::Batch => Method::Exact,
-        FitMethod::Recursive => Method::Recursive,
+    let method = match (arguments.linear, arguments.method) {
+        (false, FitMethod::Batch) => Method::Exact,
+        (false, FitMethod::Recursive) => Method::Recursive,
+        (true, FitMethod::Batch) => Method::Linear,
+        (true, FitMethod::Recursive) => Method::RecursiveLinear,
     };
-    if method == Method::Recursive && !arguments.printing.quiet {
+    if arguments.method == FitMethod::Recursive && !arguments.printing.quiet {
         let order: Vec<usize> = (0..session.experiment.set_points.len()).collect();
         remark(&states_text(&session.model()?, &order));
     }

@@ -1,7 +1,11 @@
 //! `centrical history ...`: many calibrations.
 
-mod calibrations;
+mod chart;
+mod choice;
+mod station;
 mod store;
+mod unit;
+mod units;
 
 use centrical_session::Error;
 
@@ -21,10 +25,10 @@ pub struct Arguments {
 enum Command {
     Add(store::Add),
     List(store::List),
-    Unit(calibrations::Unit),
-    Units(calibrations::Units),
-    Station(calibrations::Station),
-    Chart(calibrations::Chart),
+    Unit(unit::Arguments),
+    Units(units::Arguments),
+    Station(station::Arguments),
+    Chart(chart::Arguments),
     Page(store::Page),
 }
 
@@ -33,10 +37,10 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     match &arguments.command {
         Command::Add(arguments) => store::add(arguments),
         Command::List(arguments) => store::list(arguments),
-        Command::Unit(arguments) => calibrations::unit(arguments),
-        Command::Units(arguments) => calibrations::units(arguments),
-        Command::Station(arguments) => calibrations::station(arguments),
-        Command::Chart(arguments) => calibrations::chart(arguments),
+        Command::Unit(arguments) => unit::run(arguments),
+        Command::Units(arguments) => units::run(arguments),
+        Command::Station(arguments) => station::run(arguments),
+        Command::Chart(arguments) => chart::run(arguments),
         Command::Page(arguments) => store::page(arguments),
     }
 }

@@ -8,7 +8,7 @@ use centrical_session::{
     unwatched,
 };
 
-use super::report::Documents;
+use crate::documents::Documents;
 use crate::given::{ThreeColumns, acceleration, angle, column_name, gravity, sampling_rate, turning_radius};
 use crate::output::{Outcome, Printing, remark_unused_time};
 

@@ -82,6 +82,23 @@ fn linear_alone_is_off() {
     assert!(linear["fit"]["chi_squared"].as_f64() > exact["fit"]["chi_squared"].as_f64());
 }
 
+/// One pass of the filter gives the linear estimates, and is said to.
+#[test]
+fn the_linear_filter_gives_the_linear_estimates() {
+    let copy = Copy::new();
+    let read = |arguments: &[&str]| -> Value { serde_json::from_slice(&copy.calibrate(arguments).stdout).unwrap() };
+    let (batch, filtered) =
+        (read(&["--json", "--linear"]), read(&["--json", "--linear", "--method", "recursive", "-q"]));
+    assert_eq!(filtered["fit"]["method"], "linear [K5.3], recursive filter");
+    let parameters = |result: &Value| result["parameters"].as_array().unwrap().clone();
+    for (by_batch, by_filter) in parameters(&batch).iter().zip(parameters(&filtered)) {
+        let number = |parameter: &Value, key: &str| parameter[key].as_f64().unwrap();
+        let u = number(by_batch, "standard_uncertainty");
+        assert!((number(by_batch, "value") - number(&by_filter, "value")).abs() < 1e-6 * u, "{by_batch}");
+        assert!((u - number(&by_filter, "standard_uncertainty")).abs() < 1e-6 * u, "{by_batch}");
+    }
+}
+
 /// The printed pair relation: rank 47, the lost ones null throughout, all 21 of the instrument there, exit code 0.
 #[test]
 fn the_printed_relation_says_what_it_cannot_see() {

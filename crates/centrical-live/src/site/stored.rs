@@ -1,7 +1,7 @@
 //! A store of calibrations: the pages that `history page` writes, made when they are asked for.
 
 use std::hash::{DefaultHasher, Hash, Hasher};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use centrical_report::{PagesRequest, StorePages};
@@ -32,7 +32,7 @@ impl Stored {
     /// The pages of the store as it is now. Whoever asks while they are made waits.
     fn pages(&self) -> Result<Arc<StorePages>, Error> {
         let mut made = self.made.lock().unwrap_or_else(PoisonError::into_inner);
-        let stamp = self.stamp();
+        let stamp = self.stamp()?;
         if let Some((of, pages)) = made.as_ref()
             && *of == stamp
         {
@@ -44,11 +44,10 @@ impl Stored {
     }
 
     /// A number that changes with the parts of the store: a part never changes under its name.
-    fn stamp(&self) -> u64 {
+    fn stamp(&self) -> Result<u64, Error> {
         let mut hasher = DefaultHasher::new();
-        let parts: Vec<PathBuf> = self.store.parts().unwrap_or_default();
-        parts.hash(&mut hasher);
-        hasher.finish()
+        self.store.parts()?.hash(&mut hasher);
+        Ok(hasher.finish())
     }
 }
 

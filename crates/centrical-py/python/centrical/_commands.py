@@ -53,7 +53,8 @@ def calibrate(
         The folder of a session, its ``experiment.toml``, or a :class:`Session`.
     method
         ``"exact"``: Gauss-Newton on the exact model; ``"recursive"``: the same estimates by the recursive filter;
-        ``"linear"``: the linear fit of [K5.3] alone, with its second-order error.
+        ``"linear"``: the linear fit of [K5.3] alone, with its second-order error; ``"recursive-linear"``: the same by
+        one pass of the filter.
     hold_out
         Plateaus that are predicted and not fitted: ``"4:3"`` for the third of the fourth mounting.
     out
@@ -122,7 +123,7 @@ def tumble(
     ------
     ValueError
         A record without rests, of another unit, or with rests that do not show what is asked for (:class:`InputError`); an
-        argument that is none.
+        invalid argument.
     """
     given = [str(name) for name in terms] if terms is not None else None
     if attitudes is None and attitude_uncertainty is not None:

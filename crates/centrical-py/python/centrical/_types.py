@@ -29,7 +29,7 @@ Quantity = Union[float, str]
 Format = Literal["csv", "parquet"]
 Form = Literal["experiment", "plan", "truth", "laboratory"]
 Language = Literal["en", "ru"]
-Method = Literal["exact", "recursive", "linear"]
+Method = Literal["exact", "recursive", "linear", "recursive-linear"]
 
 
 class Session(Protocol):

@@ -44,7 +44,7 @@ impl StorePages {
             return Ok(Some(self.overview.index.clone()));
         }
         if file == DUE_PAGE {
-            return Ok(self.overview.due(|unit| self.units.page(unit).ok().flatten()));
+            return self.overview.due(|unit| self.units.page(unit));
         }
         match self.overview.pages.get(file) {
             Some(page) => Ok(Some(page.clone())),
@@ -73,7 +73,7 @@ pub fn write_history_pages(
         write_page(&out.join(file), page)?;
     }
     write_units(&units, out, progress)?;
-    let due = overview.due(|file| beginning(&out.join(file)));
+    let due = overview.due(|file| Ok(beginning(&out.join(file))))?;
     if let Some(page) = &due {
         write_page(&out.join(DUE_PAGE), page)?;
     }

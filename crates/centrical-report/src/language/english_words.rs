@@ -96,6 +96,7 @@ pub(super) fn method(method: Method) -> &'static str {
         Method::Exact => "exact, Gauss-Newton",
         Method::Recursive => "exact, recursive filter",
         Method::Linear => "linear [K5.3]",
+        Method::RecursiveLinear => "linear [K5.3], recursive filter",
     }
 }
 

@@ -102,6 +102,7 @@ pub(super) fn method(method: Method) -> &'static str {
         Method::Exact => "точная модель, метод Гаусса — Ньютона",
         Method::Recursive => "точная модель, рекуррентный фильтр",
         Method::Linear => "линейная модель [K5.3]",
+        Method::RecursiveLinear => "линейная модель [K5.3], рекуррентный фильтр",
     }
 }
 

@@ -150,6 +150,7 @@ fn by_noise(
         Method::Exact => Calibration::exact_watched(&data, &|()| progress(0)),
         Method::Recursive => Calibration::recursive(&data),
         Method::Linear => Calibration::linear(&data),
+        Method::RecursiveLinear => Calibration::recursive_linear(&data),
     };
     advance(progress, 0)?;
     let calibration = calibration.map_err(failed)?;

@@ -336,7 +336,8 @@ impl Best<'_> {
         let count = terms.len() as f64;
         for term in &mut terms {
             let square = term.significance.map_or(0.0, |t| t * t);
-            term.kept = square > self.threshold() && count * chi_squared_tail(square, 1) < 0.05;
+            let is_real = Level::Reported.is_passed_by(count * chi_squared_tail(square, 1));
+            term.kept = square > self.threshold() && is_real;
         }
         Ok(terms)
     }

@@ -128,7 +128,7 @@ pub struct PageOptions {
 }
 
 impl PageOptions {
-    /// What is asked of the pages.
+    /// The request for the pages.
     pub fn request(&self) -> PagesRequest {
         PagesRequest {
             limit: self.limit,

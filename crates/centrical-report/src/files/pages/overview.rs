@@ -1,4 +1,4 @@
-//! What is asked of pages, and what is found of a whole store: its list, its models of units, its stations.
+//! The request for pages, and the findings of a whole store: its list, its models of units, its stations.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -71,13 +71,21 @@ type WithPage = Vec<(Option<String>, ListedUnit)>;
 
 impl Overview {
     /// The list of due dates, by the page of each unit or its beginning; `None` without a limit, or where a page does not say.
-    pub fn due(&self, page: impl Fn(&str) -> Option<String>) -> Option<String> {
-        let (limit, units) = self.with_limit.as_ref()?;
-        let due = units.iter().map(|(file, unit)| {
-            let due = file.as_ref().map_or(Some(UnitDue::NotKnown), |file| due_of_page(&page(file)?));
-            Some((unit, due?))
-        });
-        Some(history_due_page(due.collect::<Option<_>>()?, *limit, Date::today()))
+    ///
+    /// # Errors
+    /// That of `page`.
+    pub fn due(&self, page: impl Fn(&str) -> Result<Option<String>, Error>) -> Result<Option<String>, Error> {
+        let Some((limit, units)) = self.with_limit.as_ref() else { return Ok(None) };
+        let mut list = Vec::with_capacity(units.len());
+        for (file, unit) in units {
+            let due = match file {
+                Some(file) => page(file)?.and_then(|page| due_of_page(&page)),
+                None => Some(UnitDue::NotKnown),
+            };
+            let Some(due) = due else { return Ok(None) };
+            list.push((unit, due));
+        }
+        Ok(Some(history_due_page(list, *limit, Date::today())))
     }
 
     /// Reads the values of all calibrations. `progress` is asked again and again.

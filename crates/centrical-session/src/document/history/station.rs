@@ -1,6 +1,7 @@
-//! One centrifuge over its sessions, as a document: schema `centrical-station-history/1`.
+//! One centrifuge over its sessions, as a JSON document: schema `centrical-station-history/1`.
 
 use centrical::Group;
+use centrical::uncertainty::Level;
 use serde::Serialize;
 
 use crate::document::result::Program;
@@ -8,9 +9,6 @@ use crate::quantity::Date;
 
 /// Name of the schema's present version.
 pub(crate) const STATION_HISTORY_SCHEMA: &str = "centrical-station-history/1";
-
-/// Family-wise level of what is called a change.
-pub(crate) const FAMILY: f64 = 0.05;
 
 /// The history of a station.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -90,7 +88,7 @@ impl StationParameter {
 
     /// Whether sessions resemble those before them, and neither a slope nor a change at once explains it.
     pub fn wanders(&self) -> bool {
-        let is_explained = 4.0 * self.lasting() < FAMILY;
+        let is_explained = Level::Reported.is_passed_by(4.0 * self.lasting());
         self.succession_probability.is_some_and(|succession| succession < self.farthest_probability.unwrap_or(1.0))
             && !is_explained
     }

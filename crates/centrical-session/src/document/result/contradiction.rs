@@ -5,7 +5,7 @@ use std::collections::HashSet;
 use centrical::{ErrorModel, Term};
 use centrical_table::LARGEST_NUMBER;
 
-use super::schema::{CalibrationResult, ConvergenceSummary, Method, ObservabilitySummary, ParameterEstimate};
+use super::schema::{CalibrationResult, ConvergenceSummary, ObservabilitySummary, ParameterEstimate};
 use crate::experiment::RAW_OUTPUT;
 use crate::quantity::Quantity;
 use crate::store::{ROUNDING, of_terms};
@@ -234,7 +234,7 @@ fn of_budget(result: &CalibrationResult) -> Option<Contradiction> {
         let found = || format!("combined uncertainty of {} {combined:e} in the budget", parameter.name);
         if differs(summed) {
             Some((found(), format!("{summed:e}, the root of the sum of the squares of its sources")))
-        } else if result.fit.method != Method::Linear && differs(stated) && !(is_short && combined < stated) {
+        } else if !result.fit.method.is_linear() && differs(stated) && !(is_short && combined < stated) {
             Some((found(), format!("{stated:e}, its standard uncertainty")))
         } else {
             None

@@ -250,6 +250,7 @@ impl FitSummary {
     fn new(calibration: &Calibration) -> Self {
         let fit = calibration.fit();
         let method = match fit.termination {
+            Termination::Linear if calibration.is_recursive() => Method::RecursiveLinear,
             Termination::Linear => Method::Linear,
             _ if calibration.is_recursive() => Method::Recursive,
             Termination::Converged | Termination::Stalled | Termination::IterationLimit => Method::Exact,

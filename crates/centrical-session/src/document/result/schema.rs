@@ -253,6 +253,16 @@ pub enum Method {
     /// The linear fit of [K5.3] alone, with its second-order error.
     #[serde(rename = "linear [K5.3]")]
     Linear,
+    /// The same estimates by one pass of the recursive filter.
+    #[serde(rename = "linear [K5.3], recursive filter")]
+    RecursiveLinear,
+}
+
+impl Method {
+    /// Whether the model is the linear one.
+    pub fn is_linear(self) -> bool {
+        matches!(self, Self::Linear | Self::RecursiveLinear)
+    }
 }
 
 /// How the fit went.

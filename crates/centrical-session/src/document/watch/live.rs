@@ -4,6 +4,7 @@ use std::path::Path;
 use std::time::{SystemTime, UNIX_EPOCH};
 
 use centrical::observability::Cause;
+use centrical::uncertainty::Level;
 use centrical::{Group, SetPoint};
 use serde::{Deserialize, Serialize};
 
@@ -146,13 +147,11 @@ pub enum Agreement {
 impl LivePlateau {
     /// How the plateau agrees with those before it.
     pub fn agreement(&self) -> Agreement {
-        /// A chance below which a plateau that fits is pointed out.
-        const IMPROBABLE: f64 = 0.05;
         if self.alarm {
             Agreement::DoesNotFit
         } else if self.innovation.degrees_of_freedom == 0 {
             Agreement::Untested
-        } else if self.innovation.probability < IMPROBABLE {
+        } else if Level::Reported.is_passed_by(self.innovation.probability) {
             Agreement::Improbable
         } else {
             Agreement::Fits

@@ -27,7 +27,7 @@ pub enum ChartLimits {
     Stated(f64, f64),
 }
 
-/// What is asked of charts.
+/// The request for control charts.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ChartRequest {
     /// Where their limits come from.

@@ -5,11 +5,11 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use centrical::Group;
 use centrical::history::{Reading, StationTest};
-use centrical::uncertainty::family_wise;
+use centrical::uncertainty::{Level, family_wise};
 
 use super::calibrated::{Calibrated, CalibratedParameter, years};
 use super::no_history::NoHistory;
-use crate::document::{FAMILY, Program, STATION_HISTORY_SCHEMA, StationHistoryReport, StationParameter};
+use crate::document::{Program, STATION_HISTORY_SCHEMA, StationHistoryReport, StationParameter};
 
 /// The history of the machine of `calibrations`.
 ///
@@ -41,7 +41,7 @@ pub fn station_history(calibrations: &[impl Borrow<Calibrated>]) -> Result<Stati
         names.iter().filter_map(|name| parameter(*name, &by_name[name])).collect();
     let chances: Vec<f64> = parameters.iter().map(|p| p.probability.unwrap_or(1.0)).collect();
     for (parameter, chance) in parameters.iter_mut().zip(family_wise(&chances)) {
-        parameter.changes = parameter.probability.is_some() && chance < FAMILY;
+        parameter.changes = parameter.probability.is_some() && Level::Reported.is_passed_by(chance);
     }
     let is_tested = parameters.iter().any(|p| p.probability.is_some());
     Ok(StationHistoryReport {

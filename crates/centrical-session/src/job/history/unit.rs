@@ -1,7 +1,7 @@
 //! One unit over its calibrations.
 
 use centrical::history::{Between, Curve, DAYS_IN_YEAR, Estimated, Evolution, Likely, Quantiles, Series};
-use centrical::uncertainty::{Compensated, Estimates, family_wise};
+use centrical::uncertainty::{Compensated, Estimates, Level, family_wise};
 use centrical_compensate::Term;
 use nalgebra::{DMatrix, Vector3};
 
@@ -15,7 +15,7 @@ use crate::document::{
 };
 use crate::quantity::Date;
 
-/// What is asked of a unit's history.
+/// The request for a unit's history.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct UnitHistoryRequest {
     /// Whether parameters may drift, which three calibrations show. Without that they scatter about a constant.
@@ -106,11 +106,11 @@ pub fn unit_history(
     let mut parameters: Vec<UnitParameter> = names.iter().filter_map(|name| job.parameter(name)).collect();
     let chances: Vec<f64> = parameters.iter().map(|p| p.probability.unwrap_or(1.0)).collect();
     for (parameter, chance) in parameters.iter_mut().zip(family_wise(&chances)) {
-        parameter.scatters = parameter.probability.is_some() && chance < FAMILY;
+        parameter.scatters = parameter.probability.is_some() && Level::Reported.is_passed_by(chance);
     }
     let slopes: Vec<f64> = parameters.iter().map(|p| p.slope_probability.unwrap_or(1.0)).collect();
     for (parameter, chance) in parameters.iter_mut().zip(family_wise(&slopes)) {
-        parameter.drifts = parameter.slope_probability.is_some() && chance < FAMILY;
+        parameter.drifts = parameter.slope_probability.is_some() && Level::Reported.is_passed_by(chance);
         parameter.step = parameter.step.filter(|_| parameter.drifts || parameter.scatters);
     }
     let readings = job.readings();
@@ -150,9 +150,6 @@ pub fn unit_history(
         readings,
     })
 }
-
-/// Family-wise level of what is called a change.
-const FAMILY: f64 = 0.05;
 
 /// Parameters of the unit that other `calibrations` determine and the last one does not.
 fn not_in(last: &Calibrated, calibrations: &[&Calibrated]) -> Vec<String> {

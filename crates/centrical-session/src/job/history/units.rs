@@ -4,7 +4,7 @@ use std::borrow::Borrow;
 use std::collections::{BTreeMap, BTreeSet};
 
 use centrical::history::{BatchTest, Between, Capability, Curve, Series, UnitDistance, UnitTrend};
-use centrical::uncertainty::family_wise;
+use centrical::uncertainty::{Level, family_wise};
 use rayon::prelude::*;
 
 use super::calibrated::{Basis, Calibrated, Finder, Places, series, single};
@@ -18,7 +18,7 @@ use crate::document::{
     UNITS_HISTORY_SCHEMA, UnitFinding, UnitFindingKind, UnitsHistoryReport, UnitsParameter, UntestedStation,
 };
 
-/// What is asked of units.
+/// The request for a comparison of units.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct UnitsHistoryRequest {
     /// Limits of parameters.
@@ -28,7 +28,7 @@ pub struct UnitsHistoryRequest {
 }
 
 /// Family-wise level, which the kinds of findings share: batches that differ, units that are outlying, and those that drift or scatter.
-const FAMILY: f64 = 0.05;
+const FAMILY: f64 = Level::Reported.probability();
 
 /// Seed of the laws that are drawn.
 const SEED: u64 = 1;

@@ -10,6 +10,7 @@ use statrs::distribution::{ChiSquared, ContinuousCDF, Normal};
 use super::between::between;
 use super::rows::Rows;
 use super::scale::Counted;
+use crate::uncertainty::Level;
 
 /// What does not depend on the values of rows.
 #[derive(Debug, Clone)]
@@ -30,7 +31,7 @@ pub struct Component {
 }
 
 /// Probability of leaving out any of sound rows.
-const LEVEL: f64 = 0.05;
+const LEVEL: f64 = Level::Reported.probability();
 
 impl Known {
     /// Of `n` rows of `p` values; `None` if `p` is zero.
