@@ -253,7 +253,11 @@ mod tests {
             ("post_code", "postcode", &["line", "postcode"]),
             ("country = \"RU\"", "country = \"Russia\"", &["address.country", "Russia", "ISO 3166-1"]),
             ("ended = 2026-10-07", "ended = 2026-09-07", &["[certificate], ended", "2026-09-07", "2026-10-05"]),
-            ("ended = 2026-10-07", "ended = 2026-10-07T10:00:00", &["line", "no day"]),
+            (
+                "ended = 2026-10-07",
+                "ended = 2026-10-07T10:00:00",
+                &["line", "found 2026-10-07T10:00:00, expected a date such as"],
+            ),
             ("value = 20.3", "value = 293.3", &["[environment], temperature", "293.3", "-50 to 100"]),
             ("value = 45", "value = 0.45", &["[environment], humidity", "0.45", "1 to 100"]),
             ("value = 100.9", "value = 757", &["[environment], pressure", "757", "30 to 120"]),

@@ -298,8 +298,7 @@ impl Serialize for Date {
 impl<'de> Deserialize<'de> for Date {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let stamp = toml::value::Datetime::deserialize(deserializer)?;
-        Self::of(stamp)
-            .ok_or_else(|| de::Error::custom(format!("{stamp} is not a date, expected one such as 2026-10-05")))
+        Self::of(stamp).ok_or_else(|| de::Error::custom(format!("{stamp}, expected a date such as 2026-10-05")))
     }
 }
 
