@@ -32,7 +32,7 @@ pub(in crate::uncertainty) struct Seen {
 }
 
 impl Columns {
-    /// Columns that change the observations by so much for one unit. A column without length stays zero.
+    /// Columns from the changes of observations by one unit of each [m/s^2]. A column without length stays zero.
     pub fn new(gain: &Gain, columns: impl IntoIterator<Item = Column>) -> Self {
         let mut z: Vec<Column> = columns.into_iter().collect();
         let mut lengths = Vec::with_capacity(z.len());
