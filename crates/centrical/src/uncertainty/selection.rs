@@ -8,11 +8,11 @@ use std::collections::HashSet;
 
 use centrical_compensate::Monomial;
 
-use super::rivals::columns::{Column, Columns};
+use super::rivals::columns::{Columns, columns_of};
 use super::verdict::Level;
 use crate::fit::{Calibration, Data, Termination};
 use crate::model::{ErrorModel, FitError, Kind, MeasurementModel, Observation, Parameter, Rival};
-use crate::progress::{OnProgress, advance};
+use crate::progress::{OnProgress, advance, unwatched};
 use crate::statistics::{Test, chi_squared_tail, f_tail};
 
 /// A model that could be meant.
@@ -356,15 +356,7 @@ impl Best<'_> {
                 x[j] = *value;
             }
         }
-        let mut columns: Vec<Column> = vec![Vec::new(); further.len()];
-        for (n, o) in observations.iter().enumerate() {
-            let all = richer.linearise(&richer.experiment().set_points[o.set_point], &x).columns;
-            for (index, change) in all {
-                if let Ok(c) = further.binary_search(&index) {
-                    columns[c].push((n, change));
-                }
-            }
-        }
+        let columns = columns_of(&further, (richer, &x), observations, &unwatched)?;
         let columns = Columns::new(self.0.gain()?, columns);
         Ok((further, columns))
     }

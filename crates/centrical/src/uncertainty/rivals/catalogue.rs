@@ -2,7 +2,7 @@
 
 use nalgebra::DMatrix;
 
-use super::columns::{Column, Columns, Seen};
+use super::columns::{Column, Columns, Seen, columns_of};
 use super::scatter::Scatter;
 use crate::fit::Calibration;
 use crate::model::{FitError, Kind, MeasurementModel, Parameter, Rival};
@@ -56,16 +56,8 @@ fn suspects(calibration: &Calibration, rivals: &[Rival], progress: OnProgress<()
     let richer = model.with_rivals(rivals);
     let first = first_further(model, &richer);
     let x = widened(calibration.fit().state(), first, &richer);
-    let set_points = &richer.experiment().set_points;
-    let mut further: Vec<Column> = vec![Vec::new(); richer.parameters().len() - first];
-    for (n, observation) in data.observations().iter().enumerate() {
-        advance(progress, ())?;
-        let all = richer.linearise(&set_points[observation.set_point], &x).columns;
-        for (index, change) in all.into_iter().filter(|(index, change)| *index >= first && change.amax() > 0.0) {
-            further[index - first].push((n, change));
-        }
-    }
-    let mut further = further.into_iter();
+    let further: Vec<usize> = (first..richer.parameters().len()).collect();
+    let mut further = columns_of(&further, (&richer, &x), data.observations(), progress)?.into_iter();
     let attitudes = attitude_uncertainties(calibration);
     let mut list = Vec::new();
     for &rival in rivals {

@@ -3,7 +3,8 @@
 use nalgebra::{DMatrix, DVector, SymmetricEigen, Vector3};
 
 use crate::fit::Gain;
-use crate::model::Observation;
+use crate::model::{FitError, MeasurementModel, Observation};
+use crate::progress::{OnProgress, advance};
 
 /// A combination of columns is seen when more than this part of its length is redundant.
 const REDUNDANT: f64 = 1e-5;
@@ -136,6 +137,31 @@ impl Seen {
         root.column_iter_mut().zip(&self.values).for_each(|(mut column, value)| column /= value.sqrt());
         &root * root.transpose()
     }
+}
+
+/// The columns of `unknowns`, rising, of a model in its state `x`. `progress` is called for each observation.
+///
+/// # Errors
+/// [`FitError`] when the caller stops.
+pub(in crate::uncertainty) fn columns_of(
+    unknowns: &[usize],
+    (model, x): (&MeasurementModel, &[f64]),
+    observations: &[Observation],
+    progress: OnProgress<()>,
+) -> Result<Vec<Column>, FitError> {
+    let mut columns = vec![Column::new(); unknowns.len()];
+    for (n, observation) in observations.iter().enumerate() {
+        advance(progress, ())?;
+        let set_point = &model.experiment().set_points[observation.set_point];
+        for (index, change) in model.linearise(set_point, x).columns {
+            if let Ok(c) = unknowns.binary_search(&index)
+                && change.amax() > 0.0
+            {
+                columns[c].push((n, change));
+            }
+        }
+    }
+    Ok(columns)
 }
 
 /// `z^T y`.

@@ -7,7 +7,7 @@ use nalgebra::{DMatrix, Vector3};
 
 use super::catalogue::{Rivals, Suspect};
 use super::columns::Columns;
-use super::order::to_rounding;
+use super::order::beyond_rounding;
 use super::power::non_centrality;
 use crate::model::{FitError, Kind, Parameter, Rival, Weight};
 use crate::observability::study::Study;
@@ -87,8 +87,7 @@ impl Rivals<'_> {
                 list.push(unseen);
             }
         }
-        let harm = |unseen: &Unseen| to_rounding(unseen.standard_uncertainties);
-        list.sort_by(|a, b| harm(b).total_cmp(&harm(a)));
+        list.sort_by(|a, b| beyond_rounding(b.standard_uncertainties, a.standard_uncertainties));
         Ok(list)
     }
 
@@ -132,7 +131,7 @@ impl Rivals<'_> {
             let (parameter, harm) = self.most_moved(moved.as_slice())?;
             (size.is_some() || harm > HARMFUL).then_some((c, size, moved, parameter, harm))
         });
-        let worst = candidates.max_by(|(.., a), (.., b)| to_rounding(*a).total_cmp(&to_rounding(*b)));
+        let worst = candidates.max_by(|(.., a), (.., b)| beyond_rounding(*a, *b));
         let Some((c, size, moved, parameter, harm)) = worst else { return Ok(None) };
         let unseen = Unseen {
             rival: *rival,

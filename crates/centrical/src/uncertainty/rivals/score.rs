@@ -2,9 +2,9 @@
 
 use super::catalogue::{Rivals, Suspect};
 use super::columns::Seen;
-use super::order::to_rounding;
+use super::order::beyond_rounding;
 use crate::model::{Parameter, Rival};
-use crate::statistics::{chi_squared_tail, holm};
+use crate::statistics::{chi_squared_tail, family_wise};
 use crate::uncertainty::verdict::Level;
 
 /// Part of what a rival explains that its own curvature may leave, since the score is linear in it: a shift of 10 mm on an arm of 0.5 m
@@ -55,11 +55,11 @@ impl Rivals<'_> {
     pub fn suspects(&self, level: f64) -> Suspects {
         let tested: Vec<&Suspect> = self.list.iter().filter(|suspect| suspect.seen.rank() > 0).collect();
         let mut tests: Vec<RivalTest> = tested.iter().map(|suspect| self.test(suspect)).collect();
-        tests.sort_by(|a, b| a.probability.total_cmp(&b.probability));
-        let family_wise = holm(tests.iter().map(|test| test.probability));
+        let probabilities: Vec<f64> = tests.iter().map(|test| test.probability).collect();
+        let family_wise = family_wise(&probabilities);
         tests.iter_mut().zip(family_wise).for_each(|(test, probability)| test.family_wise = probability);
         tests.retain(|test| test.family_wise < level);
-        tests.sort_by(|a, b| to_rounding(b.evidence()).total_cmp(&to_rounding(a.evidence())));
+        tests.sort_by(|a, b| beyond_rounding(b.evidence(), a.evidence()));
         let best = tests.first().map(|test| test.rival);
         let (mut alike, others): (Vec<RivalTest>, Vec<RivalTest>) = tests
             .into_iter()
